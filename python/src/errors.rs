@@ -1,6 +1,6 @@
 //! Python exceptions for the errors of the layers below.
 
-use chiaroscuro_render::GpuError;
+use chiaroscuro_render::{BandError, GpuError};
 use chiaroscuro_scene::PresetError;
 use chiaroscuro_volume::{AddFieldError, LoadError, LoadErrorKind, VolumeError};
 use pyo3::prelude::*;
@@ -68,6 +68,15 @@ pub(crate) fn from_gpu(err: &GpuError) -> PyErr {
         | GpuError::Internal(_) => ExceptionClass::Error,
     };
     class.error(err.to_string())
+}
+
+/// Converts an error of drawing a picture in bands.
+pub(crate) fn from_band(err: &BandError) -> PyErr {
+    match err {
+        BandError::Gpu(err) => from_gpu(err),
+        BandError::Pages(err) => from_load(err),
+        BandError::PoolTooSmall { .. } => ExceptionClass::OutOfMemory.error(err.to_string()),
+    }
 }
 
 /// Converts an error of a setting.

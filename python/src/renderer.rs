@@ -173,8 +173,9 @@ impl NativeRenderer {
         let spec = request.image_spec()?;
         let rows = self.with_renderer(py, |open| {
             let dataset = open.fitting(&volume.dataset)?;
-            open.renderer.bands(&dataset, &look.settings, &spec).all()
+            Ok(open.renderer.bands(&dataset, &look.settings, &spec).all())
         })?;
+        let rows = rows.map_err(|err| errors::from_band(&err))?;
         let [width, height] = spec.size.map(|edge| edge as usize);
         let shape = [height, width, 4];
         Ok(match rows {

@@ -8,6 +8,8 @@
 const PAGE_EDGE = 64.0;
 const PAGE_BORDER = 3.0;
 const PAGE_STORED_EDGE = 70.0;
+// Steps per voxel in which places in the texture are rounded: 32-bit numbers below 2048 have thirteen bits behind the point.
+const PLACE_STEPS = 8192.0;
 
 struct PageLevelUniform {
     // Number of its voxels per voxel of the picture's index space.
@@ -24,7 +26,7 @@ struct PagesUniform {
     coarse: vec3f,
     // Number of levels with pages.
     count: u32,
-    // One over the size of the texture of pages.
+    // One over the size of the texture of pages, whose edges are powers of two.
     texel: vec3f,
     // Level of the picture whose voxels are those in memory.
     level_in_memory: f32,
@@ -44,16 +46,17 @@ struct PagesUniform {
 // Prefiltered densities of the pages in their slots, each with a border.
 @group(1) @binding(14) var page_pool: texture_3d<f32>;
 // Slot of each page or, if it is absent, of the finest coarser one that takes its place: x, y and z in eight bits each, then
-// the level of that page in three, counted from the finest of the file, and the highest bit. 0 if there is none.
+// the level of that page in three, counted from the finest of the file, and the highest bit. For a page whose densities show
+// nothing, or are all the same, one of them in sixteen bits, and the next lower bit. 0 if there is none.
 @group(1) @binding(15) var<storage, read> page_table: array<u32>;
 // Copied before anything branches (volume/field.wgsl).
 var<private> pages: PagesUniform;
 
 // Place of a point in the texture of pages.
 struct PagePlace {
-    // Texture coordinates.
+    // Texture coordinates; of a page without texels its density.
     place: vec3f,
-    // Number of texels per voxel of the picture's index space; 0 if no page holds the point.
+    // Number of texels per voxel of the picture's index space; 0 if no page holds the point, -1 if the page has no texels.
     scale: vec3f,
 }
 
@@ -90,11 +93,16 @@ fn page_place(p: vec3f, level: u32) -> PagePlace {
     if (entry == 0u) {
         return PagePlace(vec3f(0.0), vec3f(0.0));
     }
+    if ((entry & 0x40000000u) != 0u) {
+        return PagePlace(vec3f(f32(entry & 0xffffu) / 65535.0), vec3f(-1.0));
+    }
     let scale = level_scale((entry >> 24u & 7u) - pages.first_level);
     let first = floor(page * (scale / wanted.scale)) * PAGE_EDGE;
     let slot = vec3f(vec3u(entry & 0xffu, entry >> 8u & 0xffu, entry >> 16u & 0xffu)) * PAGE_STORED_EDGE;
     // Differences reach two texels, and a fetch half a texel more; points farther out lie beyond the grid.
-    let texel = clamp((p + 0.5) * scale - first + PAGE_BORDER, vec3f(2.5), vec3f(PAGE_STORED_EDGE - 2.5));
+    let place = clamp((p + 0.5) * scale - first + PAGE_BORDER, vec3f(2.5), vec3f(PAGE_STORED_EDGE - 2.5));
+    // As many bits as are left in the last slot of the largest texture, so that all slots show the same.
+    let texel = round(place * PLACE_STEPS) * (1.0 / PLACE_STEPS);
     return PagePlace((slot + texel) * pages.texel, scale);
 }
 
@@ -113,6 +121,9 @@ fn density_on_level(p: vec3f, level: f32) -> f32 {
     let place = page_place(p, u32(level));
     if (place.scale.x > 0.0) {
         return page_density(place, vec3f(0.0));
+    }
+    if (place.scale.x < 0.0) {
+        return place.place.x;
     }
     return pyramid_texel(p, level_in_memory(level)).r;
 }
@@ -166,6 +177,9 @@ fn gradient_on_level(p: vec3f, level: f32) -> vec3f {
             page_derivative(place, vec3f(0.0, 0.0, 1.0)),
         );
         return slope * place.scale;
+    }
+    if (place.scale.x < 0.0) {
+        return vec3f(0.0);
     }
     return gradient_in_memory(p, level_in_memory(level));
 }

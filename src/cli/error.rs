@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use chiaroscuro_files::WriteError;
 use chiaroscuro_media::{EnvironmentMapError, ExportError, ReadPictureError};
-use chiaroscuro_render::GpuError;
+use chiaroscuro_render::{BandError, GpuError};
 use chiaroscuro_scene::PresetError;
 use chiaroscuro_volume::{AddFieldError, LoadError, LoadErrorKind, StepError};
 
@@ -45,6 +45,9 @@ pub enum CliError {
     /// The GPU reported an error.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// A part of a picture reads more pages of finer levels than fit into memory.
+    #[error("{0}; --pool allows more memory")]
+    PoolTooSmall(BandError),
     /// A picture file could not be read.
     #[error(transparent)]
     Picture(#[from] ReadPictureError),
@@ -122,6 +125,16 @@ pub enum CliError {
     Window(String),
 }
 
+impl From<BandError> for CliError {
+    fn from(err: BandError) -> Self {
+        match err {
+            BandError::Gpu(err) => err.into(),
+            BandError::Pages(err) => err.into(),
+            BandError::PoolTooSmall { .. } => Self::PoolTooSmall(err),
+        }
+    }
+}
+
 impl CliError {
     /// Exit code of the process: 1 failed comparison, 2 usage, 3 bad input, 4 no adapter or window, 5 out of memory
     /// or over a limit, 6 input or output error.
@@ -148,6 +161,7 @@ impl CliError {
                 | GpuError::AddressSpaceTooSmall { .. }
                 | GpuError::OverLimit { .. },
             )
+            | Self::PoolTooSmall(_)
             | Self::ThreadStart(_) => 5,
             Self::Surroundings(err) => match err {
                 EnvironmentMapError::Io { .. } => 6,

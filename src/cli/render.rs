@@ -9,13 +9,13 @@ use super::CliError;
 use super::image_args::ImageArgs;
 use super::output::{copy_to_stdout, finish_output, open_destination, warn_empty_picture, warn_line};
 use super::process::StageTimes;
-use super::scene::{FinerLevelArgs, SceneArgs};
+use super::scene::{FinerLevelArgs, PagedDataset, SceneArgs, say_missing_pages};
 use chiaroscuro_files::{
     OutputDestination, check_writable, fingerprint, with_provenance_mark, write_atomically,
 };
 use chiaroscuro_media::{check_picture, marks_layer, write_picture};
 use chiaroscuro_render::{
-    BandProgress, GpuContext, RenderOptions, Renderer, WorkOptions, dark_fraction, mean_luminance,
+    BandProgress, GpuContext, PartPages, RenderOptions, Renderer, WorkOptions, dark_fraction, mean_luminance,
 };
 use chiaroscuro_scene::{ImageRecord, ImageSpec, LookRecord, Settings, VolumeRecord};
 use chiaroscuro_volume::Dataset;
@@ -68,7 +68,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     times.end("light_search");
     let shaders = renderer.shaders();
     times.attribute("light_search", "shaders", shaders.compile_ms());
-    let (loaded, finer) = args.scene.with_pages(&args.finer, loaded, &settings, &image_spec, &say)?;
+    let PagedDataset { dataset: loaded, record: finer, of_parts } =
+        args.scene.with_pages(&args.finer, loaded, &settings, &image_spec, &say)?;
     times.end("finer_levels");
     say("rendering");
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume().opened_id(), output.folder())
@@ -77,7 +78,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let picture_record =
         ImageRecord { finer_levels: finer, ..ImageRecord::new(image_spec, context.description()) };
     let record = LookRecord::to_json(&settings, Some(&volume), Some(&picture_record));
-    let mut bands = renderer.bands(&loaded, &settings, &image_spec);
+    let pages = of_parts.map(|cache| PartPages::new(cache, |missing| say_missing_pages(&say, missing)));
+    let mut bands = renderer.bands(&loaded, &settings, &image_spec).with_pages(pages);
     let (layer, mut first) = (marks_layer(&image_spec, &settings, loaded.volume()), 0);
     let mut rows = || -> Result<_, CliError> {
         times.end("encoding_and_file");
@@ -100,6 +102,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     if bands.is_empty() {
         warn_empty_picture();
     }
+    drop(bands);
     let report = match &report_to {
         Some(_) => Some(measured_report(&context, renderer, &loaded, &settings, &image_spec, &times)?),
         None => None,

@@ -12,7 +12,7 @@ use chiaroscuro_files::sanitised;
 use chiaroscuro_media::{
     PixelRows, check_picture, marks_layer, picture_size, read_picture, read_record, write_picture,
 };
-use chiaroscuro_render::{PictureDistance, Renderer};
+use chiaroscuro_render::{PartPages, PictureDistance, Renderer};
 use chiaroscuro_scene::{AppliedSettings, LookRecord, PresetError, Settings, VolumeLocation, VolumeRecord};
 use chiaroscuro_volume::{Dataset, DatasetField, LevelRule};
 
@@ -136,12 +136,15 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     if let Some(output) = &args.output {
         check_picture(output, &image_spec)?;
     }
-    if picture_record.finer_levels.is_some() {
-        let options = args.load.load_options()?;
-        loaded = args.finer.with_pages(&source, &options, &loaded, &settings, &image_spec, &|_| ())?.0;
+    let mut of_parts = None;
+    if let Some(record) = &picture_record.finer_levels {
+        let (finer, options) = (args.finer.clone().for_record(record), args.load.load_options()?);
+        let paged = finer.with_pages(&source, &options, &loaded, &settings, &image_spec, &|_| ())?;
+        (loaded, of_parts) = (paged.dataset, paged.of_parts);
     }
     let mut renderer = Renderer::new(&context)?;
-    let mut bands = renderer.bands(&loaded, &settings, &image_spec);
+    let pages = of_parts.map(|cache| PartPages::new(cache, |_| true));
+    let mut bands = renderer.bands(&loaded, &settings, &image_spec).with_pages(pages);
     let mut again = bands.all()?;
     if bands.is_empty() {
         warn_empty_picture();

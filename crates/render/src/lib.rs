@@ -42,6 +42,7 @@ mod scattered_light;
 mod sky;
 mod volume;
 
+pub use self::readback::part_pages::{BandError, PartPages};
 pub use self::readback::pictures::is_empty_light;
 pub use self::readback::statistics::LightVolumeStatistics;
 pub use self::readback::tiled::{BandProgress, PictureBands};

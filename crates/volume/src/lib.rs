@@ -40,7 +40,7 @@ pub use occupancy::cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIG
 pub use occupancy::label_cells::CellOccupancy;
 pub use pages::{
     FinerLevel, FinerLevels, PAGE_BORDER, PAGE_EDGE, PAGE_READ_MARGIN, PAGE_STORED_EDGE, PAGES_PER_BATCH,
-    Page, PageAddress, PageCache, PageSource, ResidentPages, read_pages,
+    Page, PageAddress, PageCache, PageSource, PoolLayout, ResidentPages, read_pages,
 };
 pub use value_metadata::{
     FileLabel, FileLabelTable, MAX_LABEL_NAME, MAX_LABELS, Modality, ValueMeaning, ValueMetadata,

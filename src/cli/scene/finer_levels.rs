@@ -8,7 +8,7 @@ use clap::Args;
 use super::SceneArgs;
 use crate::cli::CliError;
 use crate::cli::output::warn_line;
-use chiaroscuro_render::plan::{fill_pages, shows_pages};
+use chiaroscuro_render::plan::{PagedView, fill_pages, shows_pages};
 use chiaroscuro_scene::{FinerLevelRecord, ImageSpec, Settings};
 use chiaroscuro_volume::{Dataset, LevelRule, PageCache};
 use chiaroscuro_volume_io::{FilePages, LoadOptions, NoPages};
@@ -23,6 +23,27 @@ pub(crate) struct FinerLevelArgs {
     /// Fail (exit code 1) if a coarser level is shown than the picture calls for
     #[arg(long)]
     require_full: bool,
+    /// Draw the picture in parts whose finer levels fit into memory one after another, so that none is left out
+    #[arg(long)]
+    out_of_core: bool,
+}
+
+/// Volume with the pages of finer levels that a picture shows.
+#[derive(Debug)]
+pub(crate) struct PagedDataset {
+    /// Volume in memory, with its pages unless each part of the picture reads its own.
+    pub dataset: Dataset,
+    /// Record of the levels; `None` if the level in memory is shown.
+    pub record: Option<FinerLevelRecord>,
+    /// Pages that are read for each part of the picture.
+    pub of_parts: Option<PageCache>,
+}
+
+impl PagedDataset {
+    /// Returns the level in memory alone.
+    fn in_memory(dataset: Dataset) -> Self {
+        Self { dataset, record: None, of_parts: None }
+    }
 }
 
 impl FinerLevelArgs {
@@ -32,8 +53,15 @@ impl FinerLevelArgs {
         if self.pool.is_some() { LevelRule::AlwaysBesidePages(most) } else { LevelRule::BesidePages(most) }
     }
 
-    /// Reads the pages of finer levels that a picture shows. Returns the dataset with them, and their record; nothing
-    /// changes where the level in memory is fine enough.
+    /// Returns the arguments by which a picture with a record is drawn again.
+    #[must_use]
+    pub(crate) fn for_record(self, record: &FinerLevelRecord) -> Self {
+        // One that was drawn whole may have needed parts.
+        Self { out_of_core: self.out_of_core || !record.is_substituted, ..self }
+    }
+
+    /// Reads the pages of finer levels that a picture shows, unless its parts read their own. Returns the dataset with them,
+    /// and their record; nothing changes where the level in memory is fine enough.
     ///
     /// # Arguments
     /// * `options`: options with which the dataset was read from `source`.
@@ -49,7 +77,7 @@ impl FinerLevelArgs {
         settings: &Settings,
         image: &ImageSpec,
         say: &dyn Fn(&str),
-    ) -> Result<(Dataset, Option<FinerLevelRecord>), CliError> {
+    ) -> Result<PagedDataset, CliError> {
         let budget = self.pool.unwrap_or_else(PageCache::default_bytes);
         // Densities of pages are those of the picture.
         let mapping = settings.shown_content(&dataset.volume().ranges());
@@ -62,37 +90,44 @@ impl FinerLevelArgs {
         };
         let pages = match FilePages::new(source, options, &dataset, budget) {
             // The finest level is in memory, or the user has asked for a part.
-            Err(NoPages::NoFinerLevel | NoPages::Portion) => return Ok((dataset, None)),
+            Err(NoPages::NoFinerLevel | NoPages::Portion) => return Ok(PagedDataset::in_memory(dataset)),
             Err(why) => {
                 unshown(&why.to_string())?;
-                return Ok((dataset, None));
+                return Ok(PagedDataset::in_memory(dataset));
             }
-            Ok(_) if !settings.sampling.finer_levels => return Ok((dataset, None)),
+            Ok(_) if !settings.sampling.finer_levels => return Ok(PagedDataset::in_memory(dataset)),
             Ok(_) if !shows_pages(settings) => {
                 unshown(
                     "the look has a projection, layers, a cut by a shape, the scattering engine, or the quality Exact",
                 )?;
-                return Ok((dataset, None));
+                return Ok(PagedDataset::in_memory(dataset));
             }
             Ok(pages) => pages,
         };
         let mut cache = dataset.page_cache(Arc::new(pages), budget);
         let size = image.size.map(|n| n * image.samples);
-        let demand = fill_pages(&mut cache, &dataset, settings, size, |missing| {
-            say(&format!("reading {missing} parts of finer levels"));
-            true
-        })?;
-        let Some(demand) = demand else { return Ok((dataset, None)) };
+        if self.out_of_core {
+            let levels = cache.resident().levels();
+            let view = PagedView::new(levels, settings, &dataset.volume().scene(), size);
+            let record = view.map(|view| view.record(levels));
+            let of_parts = record.is_some().then_some(cache);
+            return Ok(PagedDataset { dataset, record, of_parts });
+        }
+        let demand =
+            fill_pages(&mut cache, &dataset, settings, size, |missing| say_missing_pages(say, missing))?;
+        let Some(demand) = demand else { return Ok(PagedDataset::in_memory(dataset)) };
         let record = demand.record(cache.resident().levels());
         if demand.is_substituted {
             let text = format!(
-                "level {} takes the place of a finer one, whose parts do not fit into {} MiB; --pool allows more",
+                "level {} takes the place of a finer one, whose parts do not fit into {} MiB; --pool allows more, \
+                 --out-of-core draws one part after another",
                 record.finest,
                 budget >> 20
             );
             self.warn_or_fail(source, text)?;
         }
-        Ok((dataset.with_pages(Some(Arc::new(cache.resident().clone()))), Some(record)))
+        let dataset = dataset.with_pages(Some(Arc::new(cache.resident().clone())));
+        Ok(PagedDataset { dataset, record: Some(record), of_parts: None })
     }
 
     /// Warns that a coarser level is shown than a picture calls for; an error if that is not to be.
@@ -123,12 +158,18 @@ impl SceneArgs {
         settings: &Settings,
         image: &ImageSpec,
         say: &dyn Fn(&str),
-    ) -> Result<(Dataset, Option<FinerLevelRecord>), CliError> {
+    ) -> Result<PagedDataset, CliError> {
         if self.level_rule(finer) == LevelRule::Finest {
-            return Ok((dataset, None));
+            return Ok(PagedDataset::in_memory(dataset));
         }
         finer.with_pages(&self.file, &self.load_options()?, &dataset, settings, image, say)
     }
+}
+
+/// Prints the number of pages that have yet to be read; returns true, because reading goes on.
+pub(crate) fn say_missing_pages(say: &dyn Fn(&str), missing: usize) -> bool {
+    say(&format!("reading {missing} parts of finer levels"));
+    true
 }
 
 /// Parses a size such as `512MiB`, `2GiB`, or a number of bytes.

@@ -3,12 +3,16 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use chiaroscuro_render::RenderedPicture;
-use chiaroscuro_render::plan::PagedView;
+use chiaroscuro_media::PixelRows;
+use chiaroscuro_render::plan::{PagedView, density_visibility};
+use chiaroscuro_render::{BandError, PartPages, RenderedPicture, Renderer};
 use chiaroscuro_scene::{
-    OpacityLength, Projection, QualityPreset, ReconstructionKernel, Settings, ShadowAlgorithm, ShadowSettings,
+    ImageSpec, OpacityLength, PixelFormat, Projection, QualityPreset, ReconstructionKernel, Settings,
+    ShadowAlgorithm, ShadowSettings,
 };
-use chiaroscuro_volume::{FinerLevels, LoadError, Page, PageAddress, PageSource, ResidentPages, Volume};
+use chiaroscuro_volume::{
+    FinerLevels, LoadError, Page, PageAddress, PageCache, PageSource, PoolLayout, ResidentPages, Volume,
+};
 use glam::DVec3;
 
 use crate::common::{Dataset, damaged_renderer, full_precision_renderer, new_renderer, render};
@@ -193,6 +197,59 @@ fn a_renderer_that_had_other_pages_draws_the_same() {
         let alone = render(&mut new_renderer(), &coarse, &settings, SIZE);
         assert!(render(&mut renderer, &coarse, &settings, SIZE) == alone && alone != fresh);
     }
+}
+
+/// A picture in parts whose pages fit into memory one after another: the same bytes as with all pages at hand.
+#[test]
+fn parts_that_read_their_own_pages_make_the_same_picture() {
+    let fine = scenes::creature(256, DVec3::ONE);
+    let (coarse, source) = levels(&fine, 4);
+    let mut settings = look();
+    QualityPreset::Standard.apply(&mut settings);
+    settings.camera.distance = 1.6;
+    let size = [360, 280];
+    let spec = ImageSpec { depth: PixelFormat::Linear, ..ImageSpec::new(size) };
+    let view = PagedView::new(&source.levels, &settings, &coarse.volume().scene(), size);
+    assert_eq!(view.map(|view| view.first), Some(0));
+    let dataset = with_pages(&coarse, &source, &settings, size, |_| ());
+    let is_visible = density_visibility(&coarse, &settings);
+    let pages = dataset.pages().expect("pages");
+    let count = pages.ranges().values().filter(|range| Page::has_texels(**range, &is_visible)).count();
+    assert!(count < pages.ranges().len(), "some pages show nothing");
+    let drawn = |renderer: &mut Renderer, dataset: &Dataset, pages: Option<PartPages<'_>>| {
+        renderer.bands(dataset, &settings, &spec).with_pages(pages).all()
+    };
+    let source: Arc<dyn PageSource> = Arc::new(source);
+    let cache = |capacity: usize| {
+        let mapping = coarse.volume().density_mapping();
+        PageCache::new(
+            Arc::clone(&source),
+            mapping,
+            Arc::clone(coarse.bricks()),
+            PoolLayout::for_pages(capacity, 2048).bytes(),
+        )
+    };
+    let distance = |a: &PixelRows, b: &PixelRows| match (a, b) {
+        (PixelRows::Floats(a), PixelRows::Floats(b)) => {
+            a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+        }
+        _ => f32::INFINITY,
+    };
+    let whole = drawn(&mut new_renderer(), &coarse, Some(PartPages::new(cache(count), |_| true))).unwrap();
+    let capacity = cache(27).resident().capacity();
+    assert!(capacity < count, "{count} pages fit at once");
+    let parts = drawn(&mut new_renderer(), &coarse, Some(PartPages::new(cache(27), |_| true))).unwrap();
+    assert!(parts == whole, "{capacity} of {count} pages at once: {}", distance(&parts, &whole));
+    // Pages that show nothing have no texels, and no influence beyond the interpolation between levels.
+    let all = drawn(&mut new_renderer(), &dataset, None).unwrap();
+    let apart = distance(&all, &whole);
+    assert!(apart < 1.0 / 255.0, "{apart}");
+    let alone = drawn(&mut new_renderer(), &coarse, None).unwrap();
+    assert!(alone != whole, "pages change nothing");
+    let refused = drawn(&mut new_renderer(), &coarse, Some(PartPages::new(cache(1), |_| true)));
+    assert!(matches!(refused, Err(BandError::PoolTooSmall { .. })), "{refused:?}");
+    let cancelled = drawn(&mut new_renderer(), &coarse, Some(PartPages::new(cache(27), |_| false)));
+    assert!(matches!(cancelled, Err(BandError::Pages(LoadError::Cancelled))), "{cancelled:?}");
 }
 
 /// Fine voxels in cells that the means of the coarse level show as empty are found by their bounds.

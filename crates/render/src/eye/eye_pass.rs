@@ -26,6 +26,9 @@ use chiaroscuro_volume::math::{Aabb, SceneSpace};
 pub(crate) struct EyePass {
     frame: SheetFrame,
     uniform: uniforms::EyeUniform,
+    /// Rays of the whole picture of which a part is drawn, and the first pixel of the part among them.
+    rays: uniforms::SheetFrameUniform,
+    first_pixel: [f32; 2],
     /// Reach of a sample's kernel, in cells around its own.
     dilation: i32,
     /// Pyramid levels that kernels read.
@@ -117,7 +120,8 @@ impl EyePass {
             None => (uniform, variant),
             Some(paged) => (with_lookups_scaled(uniform, paged.coarse), variant.with_pages()),
         };
-        Self { frame, uniform, dilation, levels, variant, paged }
+        let (rays, first_pixel) = rays_of_part(settings, scene, window, &frame);
+        Self { frame, uniform, rays, first_pixel, dilation, levels, variant, paged }
     }
 
     /// Returns the number of slabs in the stack.
@@ -215,7 +219,7 @@ impl EyePass {
         gpu: VolumeContext<'_>,
         tables: &TransferTables,
         looked_up: LightLookup<'_>,
-        DrawnRay { target: RayTarget { picture, earlier, edges }, ray, slab_count }: DrawnRay<'_>,
+        DrawnRay { target: RayTarget { picture, earlier, edges }, mut ray, slab_count }: DrawnRay<'_>,
         rows: std::ops::Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
@@ -224,9 +228,11 @@ impl EyePass {
         let pipeline = shaders.pipeline(&self.pipeline_variant(volume, tables))?;
         let tiles = pass::tile_workgroups([self.frame.size[0], rows.end - rows.start]);
         let runs = pass::interleaved_runs(context, tiles);
-        let mut uniform =
-            uniforms::EyeUniform { first_row: rows.start, end_row: rows.end, runs, ..self.uniform };
-        uniform.frame.slab_count = slab_count;
+        let frame = uniforms::SheetFrameUniform { slab_count, ..self.rays };
+        let uniform =
+            uniforms::EyeUniform { frame, first_row: rows.start, end_row: rows.end, runs, ..self.uniform };
+        let [right, down, ..] = &mut ray.place;
+        (*right, *down) = (*right + self.first_pixel[0], *down + self.first_pixel[1]);
         let uniform = gpu.uniform("Eye::uniform", uniform);
         let ray_is_listed = ray.is_listed != 0;
         let ray = gpu.uniform("Eye::ray", ray);
@@ -259,6 +265,23 @@ impl EyePass {
         }
         Ok(())
     }
+}
+
+/// Returns the rays of the whole picture with the first pixel of a part, whose frame is given: rays of all parts are those of the
+/// whole to the last bit then.
+fn rays_of_part(
+    settings: &Settings,
+    scene: &SceneSpace,
+    part: PixelWindow,
+    frame: &SheetFrame,
+) -> (uniforms::SheetFrameUniform, [f32; 2]) {
+    // Sheets end at the borders of the part.
+    if settings.has_sheet_gradients() || settings.uses_scattering_engine() {
+        return (uniforms::SheetFrameUniform::new(frame), [0.0; 2]);
+    }
+    let whole = picture_frame(settings, scene, part.whole);
+    let rays = SheetFrame { size: frame.size, coarsest_level: frame.coarsest_level, ..whole };
+    (uniforms::SheetFrameUniform::new(&rays), part.first.map(|n| n as f32))
 }
 
 /// Scales look-ups of light from the index space of the volume in memory to that of a finer level, which begins at the same

@@ -184,6 +184,13 @@ impl LoadedVolume {
         Ok(true)
     }
 
+    /// Updates the table of pages to the transfer tables. Returns true if it is another one.
+    pub(crate) fn refresh_page_table(&mut self, context: &GpuContext) -> bool {
+        let tables = &self.tables.product;
+        let pages = self.volume.pages.as_mut();
+        pages.is_some_and(|pages| pages.refresh_table(context, tables.eye.baked(), tables.lighting.baked()))
+    }
+
     /// Returns the number of steps that upload pages which are missing.
     pub(crate) fn pending_page_steps(&self) -> usize {
         self.volume.pages.as_ref().map_or(0, PagePool::pending_steps)

@@ -1,5 +1,5 @@
 //! Frame planning: the keys of a picture's products, and the geometry of its passes. Pure functions only, but for
-//! [`fill_pages`], which reads.
+//! [`fill_pages`] and [`fill_part`], which read.
 //!
 //! [`FrameKeys`] are the inputs of each product; the renderer caches products with their keys, and recomputes those
 //! whose key differs. `geometry` lays out sheets, bricks and cells. [`probe()`] finds what is under a pixel.
@@ -36,6 +36,6 @@ pub use keys::{
     ActiveLight, ActiveLights, AntialiasedKey, AttenuationMethod, BouncesKey, CombinedKey, DisplayKey,
     EyeKey, EyeTableKey, FloorKey, FrameKeys, LightKey, OpacityKey, SkyKey, TablesKey, UniformLightColor,
 };
-pub use pages::{PageDemand, PagedView, density_visibility, fill_pages, page_demand, shows_pages};
+pub use pages::{PageDemand, PagedView, density_visibility, fill_pages, fill_part, page_demand, shows_pages};
 pub use probe::{LightArrival, Probe, probe, probe_layers};
 pub use request::{PictureOptions, RenderOptions, RenderRequest, TestSwitches, VolumeKey, WorkOptions};

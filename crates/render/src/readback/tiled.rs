@@ -1,10 +1,13 @@
 //! Tiled rendering: pictures of any size, drawn in parts and returned in bands of rows, so that the adapter's texture
 //! limits and memory do not limit their size.
 
+use std::borrow::Cow;
+
+use super::part_pages::{BandError, PartPages};
 use crate::plan::PixelWindow;
 use crate::plan::picture_frame;
 use crate::resources::textures::{read_floats, read_texture};
-use crate::{GpuError, RenderOptions, Renderer};
+use crate::{RenderOptions, Renderer};
 use chiaroscuro_media::PixelRows;
 use chiaroscuro_scene::{ImageSpec, PixelFormat, Settings};
 use chiaroscuro_volume::{Dataset, Volume, math::SceneSpace};
@@ -27,6 +30,8 @@ pub struct PictureBands<'a> {
     renderer: &'a mut Renderer,
     dataset: &'a Dataset,
     settings: &'a Settings,
+    /// Pages that are read for each part; those of the dataset if `None`.
+    pages: Option<PartPages<'a>>,
     spec: ImageSpec,
     /// Width of the margin drawn around each part, in pixels.
     margin: u32,
@@ -71,6 +76,7 @@ impl Renderer {
             renderer: self,
             dataset,
             settings,
+            pages: None,
             spec: image_spec,
             margin,
             remaining: left,
@@ -89,7 +95,13 @@ pub struct BandProgress {
     pub total: usize,
 }
 
-impl PictureBands<'_> {
+impl<'a> PictureBands<'a> {
+    /// Reads the pages of finer levels for each part; parts whose pages do not fit into memory are drawn in halves.
+    #[must_use]
+    pub fn with_pages(self, pages: Option<PartPages<'a>>) -> Self {
+        Self { pages, ..self }
+    }
+
     /// Returns the number of bands drawn, and the total.
     pub fn progress(&self) -> BandProgress {
         BandProgress { drawn: self.total - self.remaining.len(), total: self.total }
@@ -103,11 +115,11 @@ impl PictureBands<'_> {
     /// Draws the next band; `None` after the last.
     ///
     /// # Errors
-    /// Returns an error if the device fails or memory is exhausted.
-    pub fn next_rows(&mut self) -> Result<Option<PixelRows>, GpuError> {
-        let Some(parts) = self.remaining.pop() else { return Ok(None) };
+    /// Returns an error if the device fails, memory is exhausted, or pages of finer levels cannot be read.
+    pub fn next_rows(&mut self) -> Result<Option<PixelRows>, BandError> {
+        let Some(mut parts) = self.remaining.pop() else { return Ok(None) };
         let width = self.spec.size[0] as usize;
-        let height = parts.first().map_or(0, |part| part.size[1] as usize);
+        let (top, height) = parts.first().map_or((0, 0), |part| (part.first[1], part.size[1] as usize));
         let channels = 4 * width * height;
         let (mut bytes, mut floats) = (Vec::new(), Vec::new());
         if self.spec.depth == PixelFormat::Eight {
@@ -115,19 +127,31 @@ impl PictureBands<'_> {
         } else {
             floats.resize(channels, 0.0);
         }
-        for part in parts {
+        // Neighbours are drawn one after another, because they share pages.
+        parts.reverse();
+        while let Some(part) = parts.pop() {
             let drawn = part.widened(self.margin);
+            let mut dataset = Cow::Borrowed(self.dataset);
+            if let Some(pages) = &mut self.pages {
+                let fine = drawn.supersampled(self.spec.samples);
+                let Some(read) = pages.dataset(self.dataset, self.settings, fine)? else {
+                    let [first, second] = part.halves();
+                    parts.extend([second, first]);
+                    continue;
+                };
+                dataset = Cow::Owned(read);
+            }
             let mut options = RenderOptions::for_image(&self.spec, self.settings);
             options.picture.part = Some(drawn);
-            self.renderer.draw(self.dataset, self.settings, self.spec.size, &options)?;
+            self.renderer.draw(&dataset, self.settings, self.spec.size, &options)?;
             // Tested only until something is visible.
             self.is_empty = self.is_empty && self.renderer.is_picture_empty()?;
             let (context, shown) =
                 (self.renderer.context(), &self.renderer.displayed_target()?.display.product.texture);
             if self.spec.depth == PixelFormat::Eight {
-                copy_part(&mut bytes, &read_texture(context, shown)?, width, drawn, part);
+                copy_part(&mut bytes, &read_texture(context, shown)?, (width, top), drawn, part);
             } else {
-                copy_part(&mut floats, &read_floats(context, shown)?, width, drawn, part);
+                copy_part(&mut floats, &read_floats(context, shown)?, (width, top), drawn, part);
             }
         }
         Ok(Some(if self.spec.depth == PixelFormat::Eight {
@@ -141,7 +165,7 @@ impl PictureBands<'_> {
     ///
     /// # Errors
     /// Same as [`Self::next_rows`].
-    pub fn all(&mut self) -> Result<PixelRows, GpuError> {
+    pub fn all(&mut self) -> Result<PixelRows, BandError> {
         let mut whole = match self.spec.depth {
             PixelFormat::Eight => PixelRows::Bytes(Vec::new()),
             PixelFormat::Sixteen | PixelFormat::Linear => PixelRows::Floats(Vec::new()),
@@ -174,12 +198,20 @@ fn gradient_margin(volume: &Volume, settings: &Settings, size: [u32; 2], samples
     frame.gradient_steps().pixels.div_ceil(samples)
 }
 
-/// Copies a part of the drawn texels to its place in a band.
-fn copy_part<T: Copy>(band: &mut [T], texels: &[T], width: usize, drawn: PixelWindow, part: PixelWindow) {
+/// Copies a part of the drawn texels to its place in a band, which is given by its width and its first row.
+fn copy_part<T: Copy>(
+    band: &mut [T],
+    texels: &[T],
+    (width, top): (usize, u32),
+    drawn: PixelWindow,
+    part: PixelWindow,
+) {
     let (left, columns) = (part.first[0] as usize, part.size[0] as usize);
     let [before, above] = [0, 1].map(|axis| (part.first[axis] - drawn.first[axis]) as usize);
-    let rows = texels.chunks_exact(4 * drawn.size[0] as usize).skip(above);
-    for (to, from) in band.chunks_exact_mut(4 * width).zip(rows) {
+    let from = texels.chunks_exact(4 * drawn.size[0] as usize).skip(above);
+    let to =
+        band.chunks_exact_mut(4 * width).skip((part.first[1] - top) as usize).take(part.size[1] as usize);
+    for (to, from) in to.zip(from) {
         to[4 * left..4 * (left + columns)].copy_from_slice(&from[4 * before..4 * (before + columns)]);
     }
 }

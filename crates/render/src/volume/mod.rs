@@ -166,10 +166,9 @@ impl VolumeContext<'_> {
             let pages = pool.map_or_else(PagesUniform::default, |(pool, view)| pool.uniform(view));
             pages_uniform = self.uniform("Volume::pages", pages);
             no_table = self.storage("Volume::no_pages", &[0_u32]);
-            let (page_pool, page_table) =
-                pool.map_or((self.placeholder, &no_table), |(pool, _)| (&pool.view, &pool.table));
+            let page_table = pool.and_then(|(pool, _)| pool.table()).unwrap_or(&no_table);
             entries.push(bind_buffer("bound_pages", &pages_uniform));
-            entries.push(bind_view("page_pool", page_pool));
+            entries.push(bind_view("page_pool", pool.map_or(self.placeholder, |(pool, _)| &pool.view)));
             entries.push(bind_buffer("page_table", page_table));
         }
         self.bind("Volume::bind_group", pipeline, 1, &entries)

@@ -3,13 +3,16 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::layers::BakedLayers;
 use super::texture_3d;
 use crate::pipelines::uniforms::{MAX_PAGE_LEVELS, PageLevelUniform, PagesUniform};
 use crate::plan::{PagedView, PixelWindow};
 use crate::{GpuContext, GpuError};
 use chiaroscuro_scene::Settings;
 use chiaroscuro_volume::math::SceneSpace;
-use chiaroscuro_volume::{FinerLevels, PAGE_STORED_EDGE, Page, PageAddress, PagesId, ResidentPages};
+use chiaroscuro_volume::{
+    FinerLevels, PAGE_STORED_EDGE, Page, PageAddress, PagesId, PoolLayout, ResidentPages,
+};
 use half::f16;
 
 /// Number of pages that one step uploads: some 11 MiB.
@@ -20,17 +23,26 @@ pub(crate) const PAGES_PER_STEP: usize = 16;
 pub(crate) struct PagePool {
     texture: wgpu::Texture,
     pub view: wgpu::TextureView,
-    /// Slots of the pages of all levels, one entry per page (`shaders/volume/pages.wgsl`).
-    pub table: wgpu::Buffer,
-    /// Number of slots along x, y and z.
-    slots: [usize; 3],
+    table: Option<PageTable>,
+    layout: PoolLayout,
     /// Slot of each resident page.
     places: BTreeMap<PageAddress, usize>,
     /// Pages whose texels have yet to be uploaded, with their slots.
     pending: Vec<(usize, Arc<Page>)>,
     levels: Arc<FinerLevels>,
+    /// Ranges of densities of all pages that were read.
+    ranges: Arc<BTreeMap<PageAddress, [f32; 2]>>,
     id: PagesId,
     is_unorm: bool,
+}
+
+/// Table of the slots of all pages, with the layers by which it was found which of them show nothing.
+#[derive(Debug)]
+struct PageTable {
+    /// One entry per page of all levels (`shaders/volume/pages.wgsl`).
+    buffer: wgpu::Buffer,
+    eye: Arc<BakedLayers>,
+    lighting: Arc<BakedLayers>,
 }
 
 impl PagePool {
@@ -44,19 +56,18 @@ impl PagePool {
         earlier: Option<Self>,
     ) -> Result<Self, GpuError> {
         let count = pages.pages().len();
-        let earlier = earlier.filter(|known| {
-            known.levels == *pages.levels() && count <= known.slots.iter().product::<usize>()
-        });
+        let earlier =
+            earlier.filter(|known| known.levels == *pages.levels() && count <= known.layout.page_count());
         let is_unorm = context.has_unorm16;
-        let (texture, slots, mut places, mut pending) =
-            if let Some(Self { texture, slots, places, pending, .. }) = earlier {
-                (texture, slots, places, pending)
+        let (texture, layout, mut places, mut pending) =
+            if let Some(Self { texture, layout, places, pending, .. }) = earlier {
+                (texture, layout, places, pending)
             } else {
-                let (texture, slots) = pool_texture(context, pages, is_unorm)?;
-                (texture, slots, BTreeMap::new(), Vec::new())
+                let (texture, layout) = pool_texture(context, count, is_unorm)?;
+                (texture, layout, BTreeMap::new(), Vec::new())
             };
         places.retain(|address, _| pages.pages().contains_key(address));
-        let mut is_taken = vec![false; slots.iter().product()];
+        let mut is_taken = vec![false; layout.page_count()];
         for slot in places.values() {
             is_taken[*slot] = true;
         }
@@ -70,15 +81,15 @@ impl PagePool {
             places.insert(*address, slot);
             pending.push((slot, Arc::clone(page)));
         }
-        let table = page_table(pages.levels(), &places, slots);
         Ok(Self {
             view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
             texture,
-            table: context.buffer("PagePool::table", &table, wgpu::BufferUsages::STORAGE),
-            slots,
+            table: None,
+            layout,
             places,
             pending,
             levels: Arc::clone(pages.levels()),
+            ranges: Arc::clone(pages.ranges()),
             id: pages.id(),
             is_unorm,
         })
@@ -87,6 +98,37 @@ impl PagePool {
     /// Returns the identity of the pages that the pool holds.
     pub(crate) fn id(&self) -> PagesId {
         self.id
+    }
+
+    /// Updates the table of slots to the densities that layers show. Returns true if it is another one.
+    pub(crate) fn refresh_table(
+        &mut self,
+        context: &GpuContext,
+        eye: &Arc<BakedLayers>,
+        lighting: &Arc<BakedLayers>,
+    ) -> bool {
+        let is_valid = self.table.as_ref().is_some_and(|known| {
+            known.eye.has_same_visibility(eye) && known.lighting.has_same_visibility(lighting)
+        });
+        if is_valid {
+            return false;
+        }
+        let tests = [eye.visibility_test(), lighting.visibility_test()];
+        let is_visible = |range: [f32; 2]| tests.iter().any(|test| test(range));
+        let is_constant = |(address, range): &(&PageAddress, &[f32; 2])| {
+            !self.places.contains_key(address) && !Page::has_texels(**range, is_visible)
+        };
+        let constants = self.ranges.iter().filter(is_constant);
+        let constants = constants.map(|(address, range)| (*address, range[0])).collect();
+        let table = page_table(&self.levels, &self.places, &constants, self.layout);
+        let buffer = context.buffer("PagePool::table", &table, wgpu::BufferUsages::STORAGE);
+        self.table = Some(PageTable { buffer, eye: Arc::clone(eye), lighting: Arc::clone(lighting) });
+        true
+    }
+
+    /// Returns the table of slots, once it is made.
+    pub(crate) fn table(&self) -> Option<&wgpu::Buffer> {
+        self.table.as_ref().map(|table| &table.buffer)
     }
 
     /// Returns the number of steps that upload what is missing.
@@ -98,7 +140,7 @@ impl PagePool {
     pub(crate) fn upload(&mut self, context: &GpuContext) {
         let first = self.pending.len().saturating_sub(PAGES_PER_STEP);
         for (slot, page) in self.pending.drain(first..) {
-            let place = slot_place(slot, self.slots).map(|c| (c * PAGE_STORED_EDGE) as u32);
+            let place = self.layout.slot_place(slot).map(|c| (c * PAGE_STORED_EDGE) as u32);
             let converted: Vec<u16>;
             let texels = if self.is_unorm {
                 &page.texels
@@ -154,7 +196,7 @@ impl PagePool {
         PagesUniform {
             coarse: view.coarse.as_vec3().into(),
             count: view.level_count.min(MAX_PAGE_LEVELS) as u32,
-            texel: self.slots.map(|n| 1.0 / (n * PAGE_STORED_EDGE) as f32),
+            texel: self.layout.edges.map(|edge| 1.0 / edge as f32),
             level_in_memory: view.level_count as f32,
             level_0: levels[0],
             level_1: levels[1],
@@ -167,41 +209,35 @@ impl PagePool {
 
     /// Returns the size of the texture, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
-        self.slots.iter().product::<usize>() as u64 * Page::bytes()
+        self.layout.bytes()
     }
 }
 
-/// Creates a texture that holds at least these pages, with the number of its slots along x, y and z.
+/// Creates a texture with slots for a number of pages, or as many as the adapter allows.
 fn pool_texture(
     context: &GpuContext,
-    pages: &ResidentPages,
+    count: usize,
     is_unorm: bool,
-) -> Result<(wgpu::Texture, [usize; 3]), GpuError> {
-    // Slots are stored in eight bits along each axis.
-    let longest = (context.device.limits().max_texture_dimension_3d as usize / PAGE_STORED_EDGE).min(255);
-    let count = pages.pages().len();
-    // A quarter more if there is room, so that a moved camera does not mean another texture.
-    let slots = slot_dims((count + count / 4 + 1).min(pages.capacity()).max(count), longest);
+) -> Result<(wgpu::Texture, PoolLayout), GpuError> {
+    let layout = PoolLayout::for_pages(count, context.device.limits().max_texture_dimension_3d as usize);
     let format = if is_unorm { wgpu::TextureFormat::R16Unorm } else { wgpu::TextureFormat::R16Float };
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-    let dims = slots.map(|n| n * PAGE_STORED_EDGE);
-    Ok((context.texture(&texture_3d("PagePool::texture", dims, format, usage))?, slots))
+    Ok((context.texture(&texture_3d("PagePool::texture", layout.edges, format, usage))?, layout))
 }
 
-/// Returns the number of slots along x, y and z of a texture for at least `count` of them, at most `longest` along an axis.
-fn slot_dims(count: usize, longest: usize) -> [usize; 3] {
-    let longest = longest.max(1);
-    let edge = (1..longest).find(|n| n * n * n >= count).unwrap_or(longest);
-    [edge, edge, count.div_ceil(edge * edge).clamp(1, longest)]
+/// Entry of the table for a page whose densities are the same all over, or show nothing: the density, and a bit.
+fn constant_entry(density: f32) -> u32 {
+    (density.clamp(0.0, 1.0) * 65535.0 + 0.5) as u32 | 1 << 30
 }
 
-fn slot_place(slot: usize, [nx, ny, _]: [usize; 3]) -> [usize; 3] {
-    [slot % nx, slot / nx % ny, slot / (nx * ny)]
-}
-
-/// Returns the table of all levels, of which the coarsest is last: for each page the slot of itself or, if it is absent, of the
-/// finest coarser one in its place, as `shaders/volume/pages.wgsl` reads it.
-fn page_table(levels: &FinerLevels, places: &BTreeMap<PageAddress, usize>, slots: [usize; 3]) -> Vec<u32> {
+/// Returns the table of all levels, of which the coarsest is last, as `shaders/volume/pages.wgsl` reads it: for each page its
+/// slot or its only density or, if it is absent, the entry of the finest coarser one in its place.
+fn page_table(
+    levels: &FinerLevels,
+    places: &BTreeMap<PageAddress, usize>,
+    constants: &BTreeMap<PageAddress, f32>,
+    layout: PoolLayout,
+) -> Vec<u32> {
     let mut tables: Vec<Vec<u32>> = Vec::new();
     // Coarse levels first, which stand in for finer ones.
     for (index, level) in levels.0.iter().enumerate().rev() {
@@ -219,8 +255,11 @@ fn page_table(levels: &FinerLevels, places: &BTreeMap<PageAddress, usize>, slots
         }
         let begin = PageAddress { level: index, at: [0; 3] };
         let end = PageAddress { level: index + 1, at: [0; 3] };
+        for (PageAddress { at: [x, y, z], .. }, density) in constants.range(begin..end) {
+            table[x + nx * (y + ny * z)] = constant_entry(*density);
+        }
         for (PageAddress { at: [x, y, z], .. }, slot) in places.range(begin..end) {
-            let [sx, sy, sz] = slot_place(*slot, slots).map(|c| c as u32);
+            let [sx, sy, sz] = layout.slot_place(*slot).map(|c| c as u32);
             table[x + nx * (y + ny * z)] = sx | sy << 8 | sz << 16 | (index as u32) << 24 | 1 << 31;
         }
         tables.push(table);
@@ -233,21 +272,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn slots_fill_a_box_within_the_limit() {
-        assert_eq!(slot_dims(1, 29), [1, 1, 1]);
-        assert_eq!(slot_dims(28, 29), [4, 4, 2]);
-        assert_eq!(slot_dims(1_000_000, 29), [29, 29, 29]);
-        assert_eq!(slot_place(13, [3, 2, 9]), [1, 0, 2]);
-    }
-
-    #[test]
     fn coarser_pages_take_the_place_of_absent_ones() {
         let fine = [([300, 64, 64], "0".to_owned()), ([150, 32, 32], "1".to_owned())];
         let levels = FinerLevels::of_volume([75, 16, 16], fine);
         let place = |level, x| PageAddress { level, at: [x, 0, 0] };
-        let places = BTreeMap::from([(place(0, 3), 5), (place(1, 1), 2)]);
-        let (own, coarse) = (1 | 1 << 16 | 1 << 31, 1 << 8 | 1 << 24 | 1 << 31);
+        let places = BTreeMap::from([(place(0, 3), 5), (place(1, 1), 3)]);
+        let (own, coarse) = (2 | 1 << 8 | 1 << 31, 1 << 8 | 1 << 24 | 1 << 31);
         // Five pages of the finest level, and three of the other.
-        assert_eq!(page_table(&levels, &places, [2, 2, 2]), [0, 0, coarse, own, 0, 0, coarse, 0]);
+        let table =
+            |constants| page_table(&levels, &places, &constants, PoolLayout { edges: [256, 256, 128] });
+        assert_eq!(table(BTreeMap::new()), [0, 0, coarse, own, 0, 0, coarse, 0]);
+        let (low, high) = (1 << 30, 65535 | 1 << 30);
+        let constants = BTreeMap::from([(place(0, 2), 0.0), (place(1, 0), 1.0)]);
+        assert_eq!(table(constants), [high, high, low, own, 0, high, coarse, 0]);
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::{Page, PageAddress, PageSource, ResidentPages};
+use super::{Page, PageAddress, PageSource, PoolLayout, ResidentPages};
 use crate::{BrickBounds, DensityMapping, LoadError, memory_budget_bytes};
 
 /// Number of pages that are read before it is asked which are needed still: half a second's on a slow machine.
@@ -22,15 +22,15 @@ pub struct PageCache {
 }
 
 impl PageCache {
-    /// Creates a cache of pages for a volume in memory with these bounds and this mapping of values, of at most `bytes`, but
-    /// at least of one page.
+    /// Creates a cache of pages for a volume in memory with these bounds and this mapping of values, whose texture has
+    /// at most `bytes`, but room for a page.
     pub fn new(
         source: Arc<dyn PageSource>,
         mapping: DensityMapping,
         bounds: Arc<BrickBounds>,
         bytes: u64,
     ) -> Self {
-        let capacity = usize::try_from(bytes / Page::bytes()).unwrap_or(usize::MAX).max(1);
+        let capacity = PoolLayout::max_pages(bytes).max(1);
         let resident = ResidentPages::new(source.levels().clone(), mapping, bounds, capacity);
         Self { source, resident }
     }
@@ -56,10 +56,11 @@ impl PageCache {
         wanted.iter().copied().filter(|address| !self.resident.pages().contains_key(address)).collect()
     }
 
-    /// Reads pages until none is missing.
+    /// Reads pages until none is missing. Returns false if reading ended because `wanted` returned `None`.
     ///
     /// # Arguments
-    /// * `wanted`: function that returns the pages that a picture wants, given those that are known so far.
+    /// * `wanted`: function that returns the pages that a picture wants, given those that are known so far; `None` ends
+    ///   reading.
     /// * `is_visible`: function that says whether densities in a range show anything.
     /// * `progress`: function that is told the number of pages that are missing; reading ends if it returns false.
     ///
@@ -67,15 +68,15 @@ impl PageCache {
     /// Fails like [`PageSource::read`], and with [`LoadError::Cancelled`].
     pub fn fill(
         &mut self,
-        wanted: impl Fn(&Self) -> Vec<PageAddress>,
+        wanted: impl Fn(&Self) -> Option<Vec<PageAddress>>,
         is_visible: impl Fn([f32; 2]) -> bool + Sync,
         mut progress: impl FnMut(usize) -> bool,
-    ) -> Result<(), LoadError> {
+    ) -> Result<bool, LoadError> {
         loop {
-            let all = wanted(self);
+            let Some(all) = wanted(self) else { return Ok(false) };
             let mut missing = self.missing(&all);
             if missing.is_empty() {
-                return Ok(());
+                return Ok(true);
             }
             if !progress(missing.len()) {
                 return Err(LoadError::Cancelled);
@@ -86,27 +87,22 @@ impl PageCache {
         }
     }
 
-    /// Adds pages that were read. Those for which `is_visible` is false are only remembered with their range; others that are
-    /// not `wanted` make room.
+    /// Adds pages that were read. Others that are not `wanted` make room.
     pub fn insert(
         &mut self,
-        pages: Vec<(PageAddress, Arc<Page>)>,
+        mut pages: Vec<(PageAddress, Arc<Page>)>,
         wanted: &[PageAddress],
         is_visible: impl Fn([f32; 2]) -> bool,
     ) {
-        let (shown, empty): (Vec<_>, Vec<_>) =
-            pages.into_iter().partition(|(_, page)| is_visible(page.range));
-        let (shown, stale): (Vec<_>, Vec<_>) =
-            shown.into_iter().partition(|(_, page)| !page.texels.is_empty());
-        // Read for another look, of which nothing of them was visible: they are read again.
-        drop(stale);
-        self.resident.record(empty);
-        let room = self.resident.capacity().saturating_sub(shown.len());
+        // Those that were read for another look, of which nothing of them was visible, are read again.
+        pages.retain(|(_, page)| !page.texels.is_empty() || !Page::has_texels(page.range, &is_visible));
+        let shown = pages.iter().filter(|(_, page)| !page.texels.is_empty()).count();
+        let room = self.resident.capacity().saturating_sub(shown);
         if self.resident.pages().len() > room {
             let wanted: BTreeSet<_> = wanted.iter().copied().collect();
             self.resident.retain(|address| wanted.contains(&address));
         }
-        self.resident.insert(shown);
+        self.resident.insert(pages);
     }
 }
 

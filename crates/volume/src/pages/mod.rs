@@ -8,11 +8,13 @@
 mod cache;
 mod levels;
 mod page;
+mod pool_layout;
 mod resident;
 
 pub use cache::{PAGES_PER_BATCH, PageCache, read_pages};
 pub use levels::{FinerLevel, FinerLevels, PAGE_EDGE, PageAddress};
 pub use page::{PAGE_BORDER, PAGE_READ_MARGIN, PAGE_STORED_EDGE, Page};
+pub use pool_layout::PoolLayout;
 pub use resident::ResidentPages;
 
 use std::ops::Range;

@@ -28,7 +28,7 @@ const KERNEL_REACH: isize = 2;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Page {
     /// Prefiltered densities with their border, 70³ of them, x fastest, as normalised integers; none if nothing of them is
-    /// visible.
+    /// visible, or all are the same.
     pub texels: Vec<u16>,
     /// Minimum and maximum density of all voxels that were read.
     pub range: [f32; 2],
@@ -37,7 +37,8 @@ pub struct Page {
 }
 
 impl Page {
-    /// Reads the voxels of a page and prepares them; texels only if `is_visible` holds for the range of their densities.
+    /// Reads the voxels of a page and prepares them; texels only if they differ and `is_visible` holds for the range of their
+    /// densities.
     /// Beyond the grid its border is repeated.
     ///
     /// # Errors
@@ -56,13 +57,17 @@ impl Page {
         let voxels = source.read(address.level, &region)?;
         let range = range_of(&voxels);
         if range[0] >= range[1] {
-            let texels = if is_visible(range) { vec![stored(range[0]); STORED_TEXELS] } else { Vec::new() };
-            return Ok(Self { texels, range, cells: CellRanges::default() });
+            return Ok(Self { texels: Vec::new(), range, cells: CellRanges::default() });
         }
         let read = with_repeated_border(&voxels, low, &region);
         let cells = cell_ranges(&read, low, level.per_voxel);
-        let texels = if is_visible(range) { prefiltered(read) } else { Vec::new() };
+        let texels = if Self::has_texels(range, is_visible) { prefiltered(read) } else { Vec::new() };
         Ok(Self { texels, range, cells })
+    }
+
+    /// Returns true if pages with this range of densities have texels: if the densities differ, and show something.
+    pub fn has_texels(range: [f32; 2], is_visible: impl Fn([f32; 2]) -> bool) -> bool {
+        range[0] < range[1] && is_visible(range)
     }
 
     /// Returns the size of the stored texels, in bytes.

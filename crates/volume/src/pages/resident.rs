@@ -16,7 +16,7 @@ pub struct ResidentPages {
     /// Bounds of the volume in memory and of all pages that were read.
     bounds: Arc<BrickBounds>,
     /// Pages that were read, with the range of their densities.
-    ranges: BTreeMap<PageAddress, [f32; 2]>,
+    ranges: Arc<BTreeMap<PageAddress, [f32; 2]>>,
     /// Maximum number of pages.
     capacity: usize,
     id: PagesId,
@@ -31,27 +31,19 @@ impl ResidentPages {
         bounds: Arc<BrickBounds>,
         capacity: usize,
     ) -> Self {
-        let (levels, pages, ranges) = (Arc::new(levels), BTreeMap::new(), BTreeMap::new());
+        let (levels, pages, ranges) = (Arc::new(levels), BTreeMap::new(), Arc::default());
         let empty = Self { levels, mapping, pages, bounds, ranges, capacity, id: PagesId::default() };
         Self { id: empty.computed_id(), ..empty }
     }
 
-    /// Adds pages, and widens the bounds by their densities.
+    /// Adds pages, and widens the bounds by their densities. Those without texels are only remembered with their range.
     pub fn insert(&mut self, pages: impl IntoIterator<Item = (PageAddress, Arc<Page>)>) {
         for (address, page) in pages {
-            if self.ranges.insert(address, page.range).is_none() {
+            if Arc::make_mut(&mut self.ranges).insert(address, page.range).is_none() {
                 Arc::make_mut(&mut self.bounds).widen(&page.cells);
             }
-            self.pages.insert(address, page);
-        }
-        self.id = self.computed_id();
-    }
-
-    /// Widens the bounds by the densities of pages that are not kept, because they show nothing.
-    pub fn record(&mut self, pages: impl IntoIterator<Item = (PageAddress, Arc<Page>)>) {
-        for (address, page) in pages {
-            if self.ranges.insert(address, page.range).is_none() {
-                Arc::make_mut(&mut self.bounds).widen(&page.cells);
+            if !page.texels.is_empty() {
+                self.pages.insert(address, page);
             }
         }
         self.id = self.computed_id();
@@ -88,9 +80,9 @@ impl ResidentPages {
         &self.bounds
     }
 
-    /// Returns the range of the densities of a page if it was read before, resident or not.
-    pub fn range_of(&self, address: PageAddress) -> Option<[f32; 2]> {
-        self.ranges.get(&address).copied()
+    /// Returns the ranges of densities of the pages that were read, resident or not.
+    pub fn ranges(&self) -> &Arc<BTreeMap<PageAddress, [f32; 2]>> {
+        &self.ranges
     }
 
     /// Returns the identity of the pages and of the bounds.

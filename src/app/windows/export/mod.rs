@@ -2,6 +2,7 @@
 
 mod destination;
 mod dialog;
+mod export_scene;
 mod worker;
 
 use std::path::{Path, PathBuf};
@@ -9,8 +10,9 @@ use std::time::{Duration, Instant};
 
 use eframe::egui;
 
+pub(crate) use self::export_scene::{ExportScene, ReadableSeries};
 use self::worker::AnimationMotion;
-pub(crate) use self::worker::{ExportOutcome, ExportScene, ExportWorker, ReadableSeries, settings_for_kept};
+pub(crate) use self::worker::{ExportOutcome, ExportWorker, settings_for_kept};
 use crate::app::text;
 use crate::app::worker::jobs::{JobControl, JobKind, JobProgress, JobSlot};
 use chiaroscuro_media::{AnimationFormat, AnimationSpec};

@@ -6,90 +6,26 @@ use std::sync::Arc;
 
 use eframe::egui;
 
+use super::ExportScene;
 use crate::app::text;
 use crate::app::worker::jobs::JobControl;
-use crate::app::worker::request::VolumeFile;
 use chiaroscuro_files::fault::{FaultThread, panic_if_injected};
 use chiaroscuro_media::{
     Animation, AnimationFormat, AnimationSpec, ContactSheetImage, ExportError, PixelRows, export_png,
     marks_layer, write_picture,
 };
 use chiaroscuro_render::{
-    BandProgress, GpuContext, GpuError, MeasuredSettings, RenderOptions, Renderer, ShaderLibrary,
-    downsample_to_fit, plan::fill_pages,
+    BandError, BandProgress, MeasuredSettings, PartPages, RenderOptions, Renderer, ShaderLibrary,
+    plan::PagedView, plan::fill_pages,
 };
 use chiaroscuro_scene::{
     Annotations, FinerLevelRecord, ImageRecord, ImageSpec, LookRecord, SavedContent, Settings, VolumeRecord,
-    first_look::ObjectOutline,
 };
-use chiaroscuro_volume::{CancelToken, Dataset, LoadControl, PageCache, Volume};
-use chiaroscuro_volume_io::{LoadOptions, StepReadOptions, TimeSteps};
+use chiaroscuro_volume::{CancelToken, Dataset, PageCache, Volume};
 
 /// Size of a picture on the sheet of kept views, in pixels: 4:3, as first looks are framed, and four side by side
 /// fill a page at 300 dots per inch.
 const KEPT_TILE_SIZE: [u32; 2] = [640, 480];
-
-/// Scene to export: volume, settings and device.
-#[derive(Debug, Clone)]
-pub(crate) struct ExportScene {
-    /// Window's device, of which the worker opens a sibling.
-    pub context: GpuContext,
-    /// Open volume with its derived data.
-    pub dataset: Dataset,
-    /// Settings of the whole look.
-    pub settings: Settings,
-    /// First look at the volume.
-    pub first_look: Settings,
-    /// Path or name that was opened.
-    pub source: PathBuf,
-    /// Index of the selected light, for a turntable of the light.
-    pub selected_light: usize,
-    /// Outline of the visible object, if it is known.
-    pub outline: Option<Arc<ObjectOutline>>,
-    /// Time series of which the open volume is one step, if it is.
-    pub series: Option<ReadableSeries>,
-    /// File of the volume, of which finer levels are read where pictures show them.
-    pub file: Option<VolumeFile>,
-}
-
-/// Time steps, with what is needed to read them.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ReadableSeries {
-    /// Steps, one of which is open.
-    pub steps: Arc<TimeSteps>,
-    /// Options by which the open one was read.
-    pub options: LoadOptions,
-}
-
-impl ReadableSeries {
-    /// Reads a step, with the look of the one that is shown.
-    pub(crate) fn read(
-        &self,
-        index: usize,
-        shown: &Dataset,
-        (context, token): (&GpuContext, &CancelToken),
-    ) -> Result<Dataset, String> {
-        self.read_by(shown, (context, token), |by| {
-            self.steps.open_like(index, shown, by).map_err(|err| err.to_string())
-        })
-    }
-
-    /// Calls a function with the options for reading steps, which are averaged if the one that is shown had to be.
-    pub(crate) fn read_by<T>(
-        &self,
-        shown: &Dataset,
-        (context, token): (&GpuContext, &CancelToken),
-        function: impl FnOnce(&StepReadOptions<'_>) -> T,
-    ) -> T {
-        let is_averaged = shown.volume().dims() != shown.volume().file_dims();
-        let fit = |volume: Volume| {
-            let fitting = is_averaged.then(|| downsample_to_fit(context, volume.clone()));
-            fitting.and_then(Result::ok).unwrap_or(volume)
-        };
-        let control = LoadControl::with_token(token.clone());
-        function(&StepReadOptions { load: &self.options, control: &control, fit: &fit })
-    }
-}
 
 /// Outcome of an export that did not fail.
 #[derive(Debug)]
@@ -115,8 +51,8 @@ impl From<ExportError> for ExportEnd {
     }
 }
 
-impl From<GpuError> for ExportEnd {
-    fn from(err: GpuError) -> Self {
+impl From<BandError> for ExportEnd {
+    fn from(err: BandError) -> Self {
         Self::Failed(err.to_string())
     }
 }
@@ -157,26 +93,35 @@ impl ExportWorker {
         Ok(Self { renderer, adapter: beside.description(), pages: None })
     }
 
-    /// Reads the pages of finer levels that a picture of the subject shows, until `is_cancelled`.
-    fn paged_dataset(
+    /// Returns the dataset of a picture in its density mapping, with the cache of its pages; `None` if the file of the subject
+    /// has no finer levels that can be shown.
+    fn page_cache(
         &mut self,
         subject: &ExportScene,
         settings: &Settings,
-        image_spec: &ImageSpec,
-        is_cancelled: &dyn Fn() -> bool,
-    ) -> Result<PagedDataset, String> {
-        let Some(file) = &subject.file else { return Ok((subject.dataset.clone(), None)) };
+    ) -> (Dataset, Option<&mut PageCache>) {
         let mapping = settings.shown_content(&subject.dataset.volume().ranges());
         let dataset = subject.dataset.with_density_mapping(mapping);
         let is_known = self.pages.as_ref().is_some_and(|pages| pages.resident().mapping() == mapping);
         if !is_known {
             let bytes = PageCache::default_bytes();
-            let Some(pages) = file.pages(&dataset, bytes) else { return Ok((dataset, None)) };
-            self.pages = Some(dataset.page_cache(Arc::new(pages), bytes));
+            let pages = subject.file.as_ref().and_then(|file| file.pages(&dataset, bytes));
+            self.pages = pages.map(|pages| dataset.page_cache(Arc::new(pages), bytes));
         }
-        let Some(cache) = &mut self.pages else { return Ok((dataset, None)) };
+        (dataset, self.pages.as_mut())
+    }
+
+    /// Reads the pages of finer levels that a picture of the subject shows, of a coarser level if they do not fit.
+    fn paged_dataset(
+        &mut self,
+        subject: &ExportScene,
+        settings: &Settings,
+        image_spec: &ImageSpec,
+    ) -> Result<PagedDataset, String> {
+        let (dataset, cache) = self.page_cache(subject, settings);
+        let Some(cache) = cache else { return Ok((dataset, None)) };
         let size = image_spec.size.map(|n| n * image_spec.samples);
-        let demand = fill_pages(cache, &dataset, settings, size, |_| !is_cancelled());
+        let demand = fill_pages(cache, &dataset, settings, size, |_| true);
         let Some(demand) = demand.map_err(|err| err.to_string())? else { return Ok((dataset, None)) };
         let record = demand.record(cache.resident().levels());
         Ok((dataset.with_pages(Some(Arc::new(cache.resident().clone()))), Some(record)))
@@ -199,7 +144,7 @@ impl ExportWorker {
         settings: &Settings,
         image_spec: &ImageSpec,
     ) -> Result<(Vec<u8>, Option<FinerLevelRecord>), String> {
-        let (dataset, finer_levels) = self.paged_dataset(subject, settings, image_spec, &|| false)?;
+        let (dataset, finer_levels) = self.paged_dataset(subject, settings, image_spec)?;
         let options = RenderOptions::for_image(image_spec, settings);
         let shown = self.renderer.render_display(&dataset, settings, image_spec.size, &options);
         let mut shown = PixelRows::Bytes(shown.map_err(|err| err.to_string())?);
@@ -246,7 +191,8 @@ impl ExportWorker {
     }
 }
 
-/// Renders and writes one picture in bands.
+/// Renders and writes one picture in bands, with the finest level that it calls for: its parts read their pages one after
+/// another.
 pub(crate) fn export_still(
     subject: &ExportScene,
     image_spec: &ImageSpec,
@@ -255,19 +201,24 @@ pub(crate) fn export_still(
 ) -> Result<ExportOutcome, String> {
     let mut worker = ExportWorker::new(subject)?;
     let settings = &subject.settings;
-    let is_cancelled = || job.token().is_cancelled();
-    let paged = worker.paged_dataset(subject, settings, image_spec, &is_cancelled);
-    if is_cancelled() {
-        return Ok(ExportOutcome::Cancelled);
-    }
-    let (dataset, finer_levels) = paged?;
+    let (dataset, cache) = worker.page_cache(subject, settings);
+    let size = image_spec.size.map(|n| n * image_spec.samples);
+    let finer_levels = cache.and_then(|cache| {
+        let levels = cache.resident().levels();
+        PagedView::new(levels, settings, &dataset.volume().scene(), size).map(|view| view.record(levels))
+    });
+    let cache = worker.pages.take().filter(|_| finer_levels.is_some());
     let record = worker.picture_record(subject, settings, image_spec, path.parent(), finer_levels);
-    let mut bands = worker.renderer.bands(&dataset, settings, image_spec);
+    let pages = cache.map(|cache| PartPages::new(cache, |_| !job.token().is_cancelled()));
+    let mut bands = worker.renderer.bands(&dataset, settings, image_spec).with_pages(pages);
     let (layer, mut first) = (marks_layer(image_spec, settings, dataset.volume()), 0);
     let mut rows = || {
         let BandProgress { drawn, total } = bands.progress();
         report_progress(job, drawn as u32, total as u32)?;
-        let mut rows = bands.next_rows()?;
+        let mut rows = match bands.next_rows() {
+            Err(_) if job.token().is_cancelled() => return Err(ExportEnd::Cancelled),
+            drawn => drawn?,
+        };
         if let Some(rows) = &mut rows {
             layer.composite_over(image_spec, first, rows);
             first += rows.count(image_spec);

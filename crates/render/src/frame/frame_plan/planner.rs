@@ -108,7 +108,7 @@ impl<'r> FramePlanner<'r> {
         let start = Instant::now();
         let (context, settings) = (&self.tools.context, &self.request.settings);
         let baked = self.loaded.product.refresh_tables(context, settings, &self.keys.tables)?;
-        if baked > 0 {
+        if self.loaded.product.refresh_page_table(context) || baked > 0 {
             self.tools.pool.drop_bind_groups();
         }
         self.report.step_counts.tables += baked;

@@ -34,6 +34,17 @@ impl PixelWindow {
         Self { whole: self.whole, first: begin, size: [end(0) - begin[0], end(1) - begin[1]] }
     }
 
+    /// Divides the part into two halves across its longer edge, of which the second is the larger by at most a pixel.
+    #[must_use]
+    pub fn halves(self) -> [Self; 2] {
+        let axis = usize::from(self.size[1] > self.size[0]);
+        let (mut first, mut second) = (self, self);
+        first.size[axis] /= 2;
+        second.first[axis] += first.size[axis];
+        second.size[axis] -= first.size[axis];
+        [first, second]
+    }
+
     /// Divides a picture into bands of rows, from the top, and each band into parts, from the left. No part has an
     /// edge over `longest`, nor more than `most` pixels, unless a single row has.
     pub fn bands(whole: [u32; 2], longest: u32, most: u32) -> impl Iterator<Item = Vec<Self>> {
@@ -76,6 +87,16 @@ mod tests {
             }
             assert!(seen.iter().all(|&times| times == 1), "{whole:?} {longest} {most}: {seen:?}");
         }
+    }
+
+    #[test]
+    fn halves_cover_a_part() {
+        let part = PixelWindow { whole: [90, 80], first: [4, 2], size: [21, 9] };
+        let [left, right] = part.halves();
+        assert_eq!(left, PixelWindow { whole: [90, 80], first: [4, 2], size: [10, 9] });
+        assert_eq!(right, PixelWindow { whole: [90, 80], first: [14, 2], size: [11, 9] });
+        let [_, below] = left.halves()[0].halves();
+        assert_eq!(below, PixelWindow { whole: [90, 80], first: [4, 6], size: [5, 5] });
     }
 
     #[test]

@@ -207,6 +207,12 @@ impl BakedLayers {
         self.with_matter().any(|(_, table)| table.is_lowest_visible())
     }
 
+    /// Returns a test for matter at any density of a range.
+    pub(crate) fn visibility_test(&self) -> impl Fn([f32; 2]) -> bool + use<> {
+        let tests: Vec<_> = self.with_matter().map(|(_, table)| table.visibility_test()).collect();
+        move |[low, high]| tests.iter().any(|is_visible| is_visible(low, high))
+    }
+
     /// Returns true if other layers have matter at the same densities.
     pub(crate) fn has_same_visibility(&self, other: &Self) -> bool {
         let (mut own, mut others) = (self.with_matter(), other.with_matter());
