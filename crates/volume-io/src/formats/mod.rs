@@ -120,9 +120,13 @@ fn has_raw_extension(path: &Path) -> bool {
     by_extension(path).is_some_and(|reader| reader.name == raw::READER.name)
 }
 
+/// Extensions that files of other programs have as well, so that only their content tells the format.
+const AMBIGUOUS_EXTENSIONS: [&str; 1] = [".xml"];
+
 /// Extensions of all supported files, for dialogs and messages.
 pub fn supported_extensions() -> Vec<&'static str> {
-    let mut all: Vec<&str> = READERS.iter().flat_map(|reader| reader.extensions).copied().collect();
+    let readers = READERS.iter().flat_map(|reader| reader.extensions);
+    let mut all: Vec<&str> = readers.chain(&AMBIGUOUS_EXTENSIONS).copied().collect();
     all.dedup();
     all
 }

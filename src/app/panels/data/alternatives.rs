@@ -2,21 +2,30 @@
 
 use eframe::egui::{self, Ui};
 
-use super::super::controls::{row, unlabelled_row};
+use super::super::controls::{row, switch_row, unlabelled_row};
 use crate::app::common::alternatives::Alternatives;
 use crate::app::common::commands::AppCommand;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
-use chiaroscuro_volume::ChoiceAspect;
+use chiaroscuro_scene::SamplingSettings;
+use chiaroscuro_volume::{ChoiceAspect, FileDimension};
 
 /// Width of a step button, in points.
 const STEP_WIDTH: f32 = 20.0;
 
 /// Shows a row for each aspect in which the file has several volumes.
-pub(super) fn show(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<AppCommand>) {
+pub(super) fn show(
+    ui: &mut Ui,
+    volume: &VolumeFacts,
+    sampling: &mut SamplingSettings,
+    commands: &mut Vec<AppCommand>,
+) {
     for aspect in ChoiceAspect::ALL {
         let Some(alternatives) = Alternatives::new(&volume.held, aspect) else { continue };
         alternative_row(ui, aspect, &alternatives, commands);
+        if aspect == ChoiceAspect::Dimension(FileDimension::Level) && alternatives.current() > 0 {
+            switch_row(ui, text::chooser::FINER_LEVELS, &mut sampling.finer_levels);
+        }
         if aspect.is_shown_together(alternatives.count()) {
             let (name, tooltip) = if alternatives.has_colors() {
                 (text::chooser::COLORS.name, text::chooser::COLORS.tooltip.to_owned())

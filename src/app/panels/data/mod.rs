@@ -28,7 +28,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {
         return;
     };
     facts(ui, volume);
-    alternatives::show(ui, volume, panels.commands);
+    alternatives::show(ui, volume, &mut panels.settings.sampling, panels.commands);
     layers::show(ui, panels, volume);
     let selected = volume.of_layer(*panels.selected_layer);
     range::show(ui, panels.settings, selected);

@@ -53,6 +53,12 @@ pub(crate) fn step(aspect: ChoiceAspect, is_forward: bool) -> String {
     if is_forward { format!("Next {what}") } else { format!("Previous {what}") }
 }
 
+/// Switch for the levels that are finer than the one in memory.
+pub(crate) const FINER_LEVELS: ControlText = control_text(
+    "Finer levels",
+    "Reads what the picture shows of finer levels from the file, part by part; off shows the level in memory alone",
+);
+
 /// Captions of the buttons that go one item back and forward.
 pub(crate) const BACK: &str = "‹";
 pub(crate) const FORWARD: &str = "›";
