@@ -58,7 +58,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         check_writable(to.path())?;
     }
     say("loading the volume");
-    let (loaded, context) = args.scene.load_timed(&mut times, args.scene.level_rule(&args.finer))?;
+    let (loaded, context) = args.scene.load_timed(&mut times, args.scene.level_rule(args.finer.pool()))?;
     times.end("volume_and_adapter");
     let look = args.scene.look(&loaded)?;
     times.end("first_look");
@@ -68,8 +68,9 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     times.end("light_search");
     let shaders = renderer.shaders();
     times.attribute("light_search", "shaders", shaders.compile_ms());
+    let mut reader = args.scene.page_reader(&args.finer, loaded, &settings)?;
     let PagedDataset { dataset: loaded, record: finer, of_parts } =
-        args.scene.with_pages(&args.finer, loaded, &settings, &image_spec, &say)?;
+        reader.read_for(&settings, &image_spec, &say)?;
     times.end("finer_levels");
     say("rendering");
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume().opened_id(), output.folder())

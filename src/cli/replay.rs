@@ -7,7 +7,7 @@ use clap::Args;
 use super::CliError;
 use super::output::{check_overwrites, print_line, warn_empty_picture, warn_line};
 use super::process::StageTimes;
-use super::scene::{FinerLevelArgs, LoadArgs, add_layer, apply_corrections};
+use super::scene::{FinerLevelArgs, LoadArgs, PageReader, add_layer, apply_corrections};
 use chiaroscuro_files::sanitised;
 use chiaroscuro_media::{
     PixelRows, check_picture, marks_layer, picture_size, read_picture, read_record, write_picture,
@@ -136,10 +136,14 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     if let Some(output) = &args.output {
         check_picture(output, &image_spec)?;
     }
-    let mut of_parts = None;
+    let mut reader = None;
     if let Some(record) = &picture_record.finer_levels {
         let (finer, options) = (args.finer.clone().for_record(record), args.load.load_options()?);
-        let paged = finer.with_pages(&source, &options, &loaded, &settings, &image_spec, &|_| ())?;
+        reader = Some(PageReader::new(&finer, &source, &options, &loaded, &settings)?);
+    }
+    let mut of_parts = None;
+    if let Some(reader) = &mut reader {
+        let paged = reader.read_for(&settings, &image_spec, &|_| ())?;
         (loaded, of_parts) = (paged.dataset, paged.of_parts);
     }
     let mut renderer = Renderer::new(&context)?;

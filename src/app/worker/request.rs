@@ -115,10 +115,15 @@ pub(crate) struct VolumeFile {
 }
 
 impl VolumeFile {
+    /// Returns true if a dataset is the volume of the file, and not another one, such as another time step.
+    pub(crate) fn has_volume_of(&self, dataset: &Dataset) -> bool {
+        dataset.volume().opened_id() == self.opened_id
+    }
+
     /// Returns a reader of the levels that are finer than a dataset, whose blocks take at most `cache_bytes`; `None` if they
-    /// cannot be shown, or the dataset is another one, such as another time step.
+    /// cannot be shown, or the dataset is another one.
     pub(crate) fn pages(&self, dataset: &Dataset, cache_bytes: u64) -> Option<FilePages> {
-        if dataset.volume().opened_id() != self.opened_id {
+        if !self.has_volume_of(dataset) {
             return None;
         }
         let pages = FilePages::new(&self.path, &self.options, dataset, cache_bytes);

@@ -9,11 +9,10 @@ use clap::Args;
 use super::frame_selection::{AnimationPart, FrameRange, FrameSelection, is_drawn};
 use crate::cli::CliError;
 use crate::cli::output::{print_line, warn_empty_picture, warn_line};
-use crate::cli::scene::{SceneArgs, parse_size};
-use chiaroscuro_media::{Animation, AnimationFormat, AnimationSpec, FrameFolder, frame_names};
-use chiaroscuro_render::{RenderOptions, Renderer};
+use crate::cli::scene::{PagedDataset, SceneArgs, parse_size};
+use chiaroscuro_media::{Animation, AnimationFormat, AnimationSpec, FrameFolder, PixelRows, frame_names};
+use chiaroscuro_render::{PartPages, Renderer};
 use chiaroscuro_scene::{ImageRecord, ImageSpec, LookRecord, Settings, VolumeRecord};
-use chiaroscuro_volume::Dataset;
 
 /// Arguments for the frames of an animation and the place where they are written.
 #[derive(Debug, Args)]
@@ -177,29 +176,37 @@ impl<'a> FrameWriter<'a> {
         self.drawn.clone()
     }
 
+    /// Returns the size of the frames, and whether their background is left out.
+    pub(super) fn image_spec(&self) -> ImageSpec {
+        self.image_spec
+    }
+
     /// Draws a frame and writes it with its record, unless a program that draws some of the frames finds it there.
     ///
     /// # Arguments
-    /// * `volume`: record of the volume in the dataset `shown`.
+    /// * `shown`: dataset with its pages of finer levels, if it has any.
+    /// * `volume`: record of the volume in the dataset.
     pub(super) fn draw(
         &mut self,
         frame: u32,
         renderer: &mut Renderer,
-        shown: &Dataset,
+        PagedDataset { dataset, record: finer_levels, of_parts }: PagedDataset<'_>,
         settings: &Settings,
         volume: &VolumeRecord,
     ) -> Result<(), CliError> {
         let size = self.image_spec.size;
-        let record = LookRecord::to_json(settings, Some(volume), Some(&self.image_record));
+        let image_record = ImageRecord { finer_levels, ..self.image_record.clone() };
+        let record = LookRecord::to_json(settings, Some(volume), Some(&image_record));
         if let FrameDestination::Folder(_) = &self.destination
             && is_drawn(&self.files[frame as usize], size, &record)
         {
             self.is_empty = false;
             return Ok(());
         }
-        let options = RenderOptions::for_image(&self.image_spec, settings);
-        let pixels = renderer.render_display(shown, settings, size, &options)?;
-        self.is_empty = self.is_empty && renderer.is_picture_empty()?;
+        let pages = of_parts.map(|cache| PartPages::new(cache, |_| true));
+        let mut bands = renderer.bands(&dataset, settings, &self.image_spec).with_pages(pages);
+        let PixelRows::Bytes(pixels) = bands.all()? else { return Ok(()) };
+        self.is_empty = self.is_empty && bands.is_empty();
         match &mut self.destination {
             FrameDestination::Animation(file) => file.add(&pixels, &record)?,
             FrameDestination::Folder(folder) => folder.write(frame, &pixels, &record)?,

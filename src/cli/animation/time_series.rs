@@ -8,7 +8,7 @@ use super::frame_selection::FrameRange;
 use super::frame_writer::{AnimationArgs, AnimationLength, FrameWriter};
 use super::step_reader::StepReader;
 use crate::cli::CliError;
-use crate::cli::scene::SceneArgs;
+use crate::cli::scene::{PagedDataset, SceneArgs};
 use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{DensityRange, Settings};
 use chiaroscuro_volume::{Dataset, DensityMapping};
@@ -86,7 +86,7 @@ pub(crate) fn run(args: &TimeSeriesArgs) -> Result<(), CliError> {
         let step = reader.dataset(&shown, index)?;
         let record = reader.record(&step, index, animation.record_folder());
         let settings = settings.at_turntable_angle(None, turn / WHOLE_TURN_DEG * f64::from(frame) / last);
-        writer.draw(frame, &mut renderer, &step, &settings, &record)?;
+        writer.draw(frame, &mut renderer, PagedDataset::in_memory(step), &settings, &record)?;
     }
     writer.finish()
 }

@@ -5,7 +5,8 @@ use clap::Args;
 use super::frame_selection::FrameRange;
 use super::frame_writer::{AnimationArgs, AnimationLength, FrameWriter};
 use crate::cli::CliError;
-use crate::cli::scene::SceneArgs;
+use crate::cli::process::StageTimes;
+use crate::cli::scene::{PoolArgs, SceneArgs};
 use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::VolumeRecord;
 
@@ -28,15 +29,17 @@ pub(crate) struct TurntableArgs {
     /// Turn this light around the vertical axis instead of the camera; 1 is the first
     #[arg(long, value_name = "N")]
     light: Option<usize>,
+    #[command(flatten)]
+    pool: PoolArgs,
 }
 
 /// Renders the frames of one turn, or some of them.
 pub(crate) fn run(args: &TurntableArgs) -> Result<(), CliError> {
-    let TurntableArgs { scene, animation, frames, only, rate, light } = args;
+    let TurntableArgs { scene, animation, frames, only, rate, light, pool } = args;
     animation.check_output()?;
     let selection = animation.selection(*only, *frames)?;
     animation.keep_apart(scene, [], *frames)?;
-    let (loaded, context) = scene.load()?;
+    let (loaded, context) = scene.load_timed(&mut StageTimes::from_now(), scene.level_rule(pool))?;
     let look = scene.look(&loaded)?;
     let mut renderer = Renderer::new(&context)?;
     let settings = look.settings(&mut renderer, &loaded)?;
@@ -54,9 +57,11 @@ pub(crate) fn run(args: &TurntableArgs) -> Result<(), CliError> {
     let volume = VolumeRecord::new(scene.source(), loaded.volume().opened_id(), folder)
         .with_choice(loaded.volume().contents().choice())
         .with_layers_of(&loaded, folder);
+    let mut reader = scene.page_reader(&pool.in_parts(), loaded, &settings)?;
     for frame in writer.frames() {
         let settings = settings.at_turntable_angle(light, f64::from(frame) / f64::from(*frames));
-        writer.draw(frame, &mut renderer, &loaded, &settings, &volume)?;
+        let shown = reader.read_for(&settings, &writer.image_spec(), &|_| ())?;
+        writer.draw(frame, &mut renderer, shown, &settings, &volume)?;
     }
     writer.finish()
 }

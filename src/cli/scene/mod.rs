@@ -19,7 +19,7 @@ pub(super) use self::corrections::{apply_command_line_corrections, apply_correct
 pub(super) use self::decompression_warning::{
     control_with_size_warning, open_for_overview, open_with_size_warning,
 };
-pub(super) use self::finer_levels::{FinerLevelArgs, PagedDataset, say_missing_pages};
+pub(super) use self::finer_levels::{FinerLevelArgs, PageReader, PagedDataset, PoolArgs, say_missing_pages};
 pub(super) use self::layers::add_layer;
 use self::layers::{LayerArg, ShownSteps, with_all_channels, with_layers};
 pub(super) use self::load_args::{LoadArgs, parse_voxel_type};

@@ -235,10 +235,11 @@ fn parts_that_read_their_own_pages_make_the_same_picture() {
         }
         _ => f32::INFINITY,
     };
-    let whole = drawn(&mut new_renderer(), &coarse, Some(PartPages::new(cache(count), |_| true))).unwrap();
+    let whole =
+        drawn(&mut new_renderer(), &coarse, Some(PartPages::new(&mut cache(count), |_| true))).unwrap();
     let capacity = cache(27).resident().capacity();
     assert!(capacity < count, "{count} pages fit at once");
-    let parts = drawn(&mut new_renderer(), &coarse, Some(PartPages::new(cache(27), |_| true))).unwrap();
+    let parts = drawn(&mut new_renderer(), &coarse, Some(PartPages::new(&mut cache(27), |_| true))).unwrap();
     assert!(parts == whole, "{capacity} of {count} pages at once: {}", distance(&parts, &whole));
     // Pages that show nothing have no texels, and no influence beyond the interpolation between levels.
     let all = drawn(&mut new_renderer(), &dataset, None).unwrap();
@@ -246,9 +247,9 @@ fn parts_that_read_their_own_pages_make_the_same_picture() {
     assert!(apart < 1.0 / 255.0, "{apart}");
     let alone = drawn(&mut new_renderer(), &coarse, None).unwrap();
     assert!(alone != whole, "pages change nothing");
-    let refused = drawn(&mut new_renderer(), &coarse, Some(PartPages::new(cache(1), |_| true)));
+    let refused = drawn(&mut new_renderer(), &coarse, Some(PartPages::new(&mut cache(1), |_| true)));
     assert!(matches!(refused, Err(BandError::PoolTooSmall { .. })), "{refused:?}");
-    let cancelled = drawn(&mut new_renderer(), &coarse, Some(PartPages::new(cache(27), |_| false)));
+    let cancelled = drawn(&mut new_renderer(), &coarse, Some(PartPages::new(&mut cache(27), |_| false)));
     assert!(matches!(cancelled, Err(BandError::Pages(LoadError::Cancelled))), "{cancelled:?}");
 }
 

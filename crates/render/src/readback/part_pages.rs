@@ -37,7 +37,7 @@ pub enum BandError {
 
 /// Pages of finer levels that are read for one part of a picture after another.
 pub struct PartPages<'a> {
-    cache: PageCache,
+    cache: &'a mut PageCache,
     /// Function that is told the number of pages that are missing; drawing ends if it returns false.
     progress: Box<dyn FnMut(usize) -> bool + 'a>,
 }
@@ -49,9 +49,9 @@ impl fmt::Debug for PartPages<'_> {
 }
 
 impl<'a> PartPages<'a> {
-    /// Creates pages that a cache holds, with a function that is told the number of those that are missing; drawing ends if it
+    /// Creates pages that are held in a cache, with a function that is told the number of those that are missing; drawing ends if it
     /// returns false.
-    pub fn new(cache: PageCache, progress: impl FnMut(usize) -> bool + 'a) -> Self {
+    pub fn new(cache: &'a mut PageCache, progress: impl FnMut(usize) -> bool + 'a) -> Self {
         Self { cache, progress: Box::new(progress) }
     }
 
@@ -65,7 +65,7 @@ impl<'a> PartPages<'a> {
         settings: &Settings,
         part: PixelWindow,
     ) -> Result<Option<Dataset>, BandError> {
-        if fill_part(&mut self.cache, dataset, settings, part, &mut self.progress)? {
+        if fill_part(self.cache, dataset, settings, part, &mut self.progress)? {
             return Ok(Some(dataset.clone().with_pages(Some(Arc::new(self.cache.resident().clone())))));
         }
         if part.size.iter().any(|&edge| edge >= 2 * MIN_HALVED_EDGE) {

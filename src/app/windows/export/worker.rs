@@ -15,8 +15,7 @@ use chiaroscuro_media::{
     marks_layer, write_picture,
 };
 use chiaroscuro_render::{
-    BandError, BandProgress, MeasuredSettings, PartPages, RenderOptions, Renderer, ShaderLibrary,
-    plan::PagedView, plan::fill_pages,
+    BandError, BandProgress, MeasuredSettings, PartPages, Renderer, ShaderLibrary, plan::PagedView,
 };
 use chiaroscuro_scene::{
     Annotations, FinerLevelRecord, ImageRecord, ImageSpec, LookRecord, SavedContent, Settings, VolumeRecord,
@@ -81,8 +80,11 @@ pub(crate) struct ExportWorker {
     pages: Option<PageCache>,
 }
 
-/// Dataset with the pages of finer levels that a picture shows, and their record.
-type PagedDataset = (Dataset, Option<FinerLevelRecord>);
+/// Pages of finer levels that the parts of a picture read, and the record of these levels.
+struct PicturePages {
+    cache: PageCache,
+    record: FinerLevelRecord,
+}
 
 impl ExportWorker {
     /// Opens a sibling device and creates a renderer on it.
@@ -93,38 +95,41 @@ impl ExportWorker {
         Ok(Self { renderer, adapter: beside.description(), pages: None })
     }
 
-    /// Returns the dataset of a picture in its density mapping, with the cache of its pages; `None` if the file of the subject
-    /// has no finer levels that can be shown.
-    fn page_cache(
-        &mut self,
-        subject: &ExportScene,
-        settings: &Settings,
-    ) -> (Dataset, Option<&mut PageCache>) {
-        let mapping = settings.shown_content(&subject.dataset.volume().ranges());
-        let dataset = subject.dataset.with_density_mapping(mapping);
-        let is_known = self.pages.as_ref().is_some_and(|pages| pages.resident().mapping() == mapping);
-        if !is_known {
-            let bytes = PageCache::default_bytes();
-            let pages = subject.file.as_ref().and_then(|file| file.pages(&dataset, bytes));
-            self.pages = pages.map(|pages| dataset.page_cache(Arc::new(pages), bytes));
-        }
-        (dataset, self.pages.as_mut())
-    }
-
-    /// Reads the pages of finer levels that a picture of the subject shows, of a coarser level if they do not fit.
-    fn paged_dataset(
+    /// Returns the dataset of a picture in its density mapping, with the pages of finer levels that its parts read, if it
+    /// shows any.
+    fn take_pages(
         &mut self,
         subject: &ExportScene,
         settings: &Settings,
         image_spec: &ImageSpec,
-    ) -> Result<PagedDataset, String> {
-        let (dataset, cache) = self.page_cache(subject, settings);
-        let Some(cache) = cache else { return Ok((dataset, None)) };
+    ) -> (Dataset, Option<PicturePages>) {
+        let mapping = settings.shown_content(&subject.dataset.volume().ranges());
+        let dataset = subject.dataset.with_density_mapping(mapping);
+        let Some(file) = subject.file.as_ref().filter(|file| file.has_volume_of(&dataset)) else {
+            return (dataset, None);
+        };
+        let is_valid = |cache: &PageCache| cache.resident().mapping() == mapping;
+        let cache = self.pages.take().filter(is_valid).or_else(|| {
+            let bytes = PageCache::default_bytes();
+            let pages = file.pages(&dataset, bytes)?;
+            Some(dataset.page_cache(Arc::new(pages), bytes))
+        });
+        let Some(cache) = cache else { return (dataset, None) };
         let size = image_spec.size.map(|n| n * image_spec.samples);
-        let demand = fill_pages(cache, &dataset, settings, size, |_| true);
-        let Some(demand) = demand.map_err(|err| err.to_string())? else { return Ok((dataset, None)) };
-        let record = demand.record(cache.resident().levels());
-        Ok((dataset.with_pages(Some(Arc::new(cache.resident().clone()))), Some(record)))
+        let levels = cache.resident().levels();
+        let Some(view) = PagedView::new(levels, settings, &dataset.volume().scene(), size) else {
+            self.pages = Some(cache);
+            return (dataset, None);
+        };
+        let record = view.record(levels);
+        (dataset, Some(PicturePages { cache, record }))
+    }
+
+    /// Keeps the pages of a picture for the next one, and returns their record.
+    fn put_back(&mut self, pages: Option<PicturePages>) -> Option<FinerLevelRecord> {
+        let PicturePages { cache, record } = pages?;
+        self.pages = Some(cache);
+        Some(record)
     }
 
     /// Renders a picture of the subject with other settings, tone mapped and with marks; RGBA, 8 bits.
@@ -144,10 +149,11 @@ impl ExportWorker {
         settings: &Settings,
         image_spec: &ImageSpec,
     ) -> Result<(Vec<u8>, Option<FinerLevelRecord>), String> {
-        let (dataset, finer_levels) = self.paged_dataset(subject, settings, image_spec)?;
-        let options = RenderOptions::for_image(image_spec, settings);
-        let shown = self.renderer.render_display(&dataset, settings, image_spec.size, &options);
-        let mut shown = PixelRows::Bytes(shown.map_err(|err| err.to_string())?);
+        let (dataset, mut pages) = self.take_pages(subject, settings, image_spec);
+        let parts = pages.as_mut().map(|pages| PartPages::new(&mut pages.cache, |_| true));
+        let shown = self.renderer.bands(&dataset, settings, image_spec).with_pages(parts).all();
+        let mut shown = shown.map_err(|err| err.to_string())?;
+        let finer_levels = self.put_back(pages);
         marks_layer(image_spec, settings, subject.dataset.volume()).composite_over(image_spec, 0, &mut shown);
         match shown {
             PixelRows::Bytes(shown) => Ok((shown, finer_levels)),
@@ -201,16 +207,11 @@ pub(crate) fn export_still(
 ) -> Result<ExportOutcome, String> {
     let mut worker = ExportWorker::new(subject)?;
     let settings = &subject.settings;
-    let (dataset, cache) = worker.page_cache(subject, settings);
-    let size = image_spec.size.map(|n| n * image_spec.samples);
-    let finer_levels = cache.and_then(|cache| {
-        let levels = cache.resident().levels();
-        PagedView::new(levels, settings, &dataset.volume().scene(), size).map(|view| view.record(levels))
-    });
-    let cache = worker.pages.take().filter(|_| finer_levels.is_some());
+    let (dataset, mut pages) = worker.take_pages(subject, settings, image_spec);
+    let finer_levels = pages.as_ref().map(|pages| pages.record.clone());
     let record = worker.picture_record(subject, settings, image_spec, path.parent(), finer_levels);
-    let pages = cache.map(|cache| PartPages::new(cache, |_| !job.token().is_cancelled()));
-    let mut bands = worker.renderer.bands(&dataset, settings, image_spec).with_pages(pages);
+    let parts = pages.as_mut().map(|pages| PartPages::new(&mut pages.cache, |_| !job.token().is_cancelled()));
+    let mut bands = worker.renderer.bands(&dataset, settings, image_spec).with_pages(parts);
     let (layer, mut first) = (marks_layer(image_spec, settings, dataset.volume()), 0);
     let mut rows = || {
         let BandProgress { drawn, total } = bands.progress();
