@@ -1,5 +1,6 @@
 //! Tests of the command `turntable`: animation files and folders of frames.
 
+use crate::checks::pixels;
 use crate::program::ProgramFolder;
 
 #[test]
@@ -67,4 +68,16 @@ fn parts_of_a_turn_are_drawn_by_several_programs() {
         assert_eq!(outcome.code, Some(2), "{outcome:?}");
         assert!(outcome.stderr.contains(why), "{outcome:?}");
     }
+}
+
+#[test]
+fn frames_show_the_finest_level_that_their_pixels_call_for() {
+    let folder = ProgramFolder::new();
+    folder.run_successfully("convert builtin:chair:256 chair.ome.zarr");
+    let look = "--size 200x150 --set camera.distance=1.5";
+    folder.run_successfully(&format!("turntable chair.ome.zarr -o turn --frames 2 --pool 32MiB {look}"));
+    let frames = ["turn/0000.png", "turn/0001.png"].map(|name| pixels(&folder.path(name)));
+    folder.run_successfully(&format!("render chair.ome.zarr -o one.png --pool 64MiB --require-full {look}"));
+    assert!(frames[0] == pixels(&folder.path("one.png")) && frames[0] != frames[1]);
+    assert!(folder.run_successfully("replay turn/0001.png --check --pool 32MiB").contains("identical"));
 }
