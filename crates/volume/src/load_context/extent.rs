@@ -220,7 +220,8 @@ impl GridExtent {
         let every = format!("--every {} reads {}, ", step(every), said(every));
         every
             + &means
-            + "--region X0:X1,Y0:Y1,Z0:Z1 reads a part; or check the dimensions, or close other programs"
+            + "--region X0:X1,Y0:Y1,Z0:Z1 reads a part; `chiaroscuro convert` writes an .ome.zarr, whose full detail is \
+               shown part by part; or check the dimensions, or close other programs"
     }
 
     /// Returns the bytes for voxels kept while reading, for voxels derived from them, and for buffers in use at a
@@ -296,6 +297,7 @@ mod tests {
             "need 7.5 GiB, 1.0 GiB are allowed",
             "--every 2 reads 1000 x 1000 x 500 voxels in 953.7 MiB",
             "--reduce 3 ",
+            "`chiaroscuro convert` writes an .ome.zarr",
         ] {
             assert!(said.contains(words), "{words}: {said}");
         }
