@@ -144,10 +144,12 @@ fn parts_of_finer_levels_arrive_in_the_picture() {
     harness.key_press(Key::ArrowLeft);
     harness.run_steps(3);
     wait_until_idle(&mut harness);
-    click(&mut harness, "Data");
-    harness.get_by_label("Finer levels").scroll_to_me();
-    harness.run_steps(3);
-    click(&mut harness, "Finer levels");
+    for section_or_row in ["Data", "Finer levels"] {
+        harness.get_by_label(section_or_row).scroll_to_me();
+        harness.run_steps(8);
+        click(&mut harness, section_or_row);
+        harness.run_steps(8);
+    }
     wait_until_idle(&mut harness);
     harness.run_steps(3);
     assert!(!is_complete(&harness), "the level in memory is shown alone");
