@@ -205,6 +205,7 @@ impl<'a> FrameWriter<'a> {
         }
         let pages = of_parts.map(|cache| PartPages::new(cache, |_| true));
         let mut bands = renderer.bands(&dataset, settings, &self.image_spec).with_pages(pages);
+        // Frames have 8 bits per channel.
         let PixelRows::Bytes(pixels) = bands.all()? else { return Ok(()) };
         self.is_empty = self.is_empty && bands.is_empty();
         match &mut self.destination {

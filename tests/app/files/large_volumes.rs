@@ -140,7 +140,7 @@ fn parts_of_finer_levels_arrive_in_the_picture() {
     assert!(is_complete(&harness), "{:?}", harness.state().errors());
     wait_until_idle(&mut harness);
     assert!(picture(&mut harness) != alone, "the finest level shows more");
-    // What is there already is kept while the camera moves.
+    // Parts that were read stay while the camera moves.
     harness.key_press(Key::ArrowLeft);
     harness.run_steps(3);
     wait_until_idle(&mut harness);

@@ -249,6 +249,13 @@ fn parts_that_read_their_own_pages_make_the_same_picture() {
     assert!(alone != whole, "pages change nothing");
     let refused = drawn(&mut new_renderer(), &coarse, Some(PartPages::new(&mut cache(1), |_| true)));
     assert!(matches!(refused, Err(BandError::PoolTooSmall { .. })), "{refused:?}");
+    // Parts are halved in pixels, however many samples each has.
+    let many = ImageSpec { samples: 16, ..ImageSpec::new([40, 30]) };
+    let mut cache_of_one = cache(1);
+    let mut renderer = new_renderer();
+    let bands = renderer.bands(&coarse, &settings, &many);
+    let refused = bands.with_pages(Some(PartPages::new(&mut cache_of_one, |_| true))).all();
+    assert!(matches!(refused, Err(BandError::PoolTooSmall { .. })), "{refused:?}");
     let cancelled = drawn(&mut new_renderer(), &coarse, Some(PartPages::new(&mut cache(27), |_| false)));
     assert!(matches!(cancelled, Err(BandError::Pages(LoadError::Cancelled))), "{cancelled:?}");
 }

@@ -8,8 +8,8 @@ use crate::plan::{PixelWindow, fill_part};
 use chiaroscuro_scene::Settings;
 use chiaroscuro_volume::{Dataset, LoadError, PageCache};
 
-/// Shortest edge of a part that is halved because its pages do not fit, in pixels: smaller ones see the same pages.
-const MIN_HALVED_EDGE: u32 = 16;
+/// Shortest edge that is left when a part is halved because its pages do not fit, in pixels: smaller parts see the same pages.
+const MIN_HALF_EDGE: u32 = 16;
 
 /// Reason why a picture could not be drawn in bands.
 #[derive(Debug, thiserror::Error)]
@@ -57,6 +57,10 @@ impl<'a> PartPages<'a> {
 
     /// Reads the pages of a part. Returns the dataset with them; `None` if they do not fit and the part has to be halved.
     ///
+    /// # Arguments
+    /// * `part`: part in pixels of the picture.
+    /// * `drawn`: samples that are drawn for it, with its margin.
+    ///
     /// # Errors
     /// Fails if the pages cannot be read, or do not fit although the part is small.
     pub(super) fn dataset(
@@ -64,11 +68,12 @@ impl<'a> PartPages<'a> {
         dataset: &Dataset,
         settings: &Settings,
         part: PixelWindow,
+        drawn: PixelWindow,
     ) -> Result<Option<Dataset>, BandError> {
-        if fill_part(self.cache, dataset, settings, part, &mut self.progress)? {
+        if fill_part(self.cache, dataset, settings, drawn, &mut self.progress)? {
             return Ok(Some(dataset.clone().with_pages(Some(Arc::new(self.cache.resident().clone())))));
         }
-        if part.size.iter().any(|&edge| edge >= 2 * MIN_HALVED_EDGE) {
+        if part.size.iter().any(|&edge| edge >= 2 * MIN_HALF_EDGE) {
             return Ok(None);
         }
         let [width, height] = part.size;

@@ -133,8 +133,8 @@ impl<'a> PictureBands<'a> {
             let drawn = part.widened(self.margin);
             let mut dataset = Cow::Borrowed(self.dataset);
             if let Some(pages) = &mut self.pages {
-                let fine = drawn.supersampled(self.spec.samples);
-                let Some(read) = pages.dataset(self.dataset, self.settings, fine)? else {
+                let samples = drawn.supersampled(self.spec.samples);
+                let Some(read) = pages.dataset(self.dataset, self.settings, part, samples)? else {
                     let [first, second] = part.halves();
                     parts.extend([second, first]);
                     continue;

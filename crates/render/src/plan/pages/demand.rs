@@ -114,7 +114,8 @@ pub fn density_visibility(
     let volume = dataset.volume();
     let (range, scene) = (volume.table_range(), volume.scene());
     let tables = [settings.bake_eye(range, &scene), settings.bake_lighting(range, &scene)];
-    move |[low, high]: [f32; 2]| tables.iter().any(|table| table.visibility_test()(low, high))
+    let tests = tables.map(|table| table.visibility_test());
+    move |[low, high]: [f32; 2]| tests.iter().any(|is_visible| is_visible(low, high))
 }
 
 #[cfg(test)]
