@@ -87,7 +87,8 @@ impl PageCache {
         }
     }
 
-    /// Adds pages that were read. Others that are not `wanted` make room.
+    /// Adds pages that were read. Others that are not `wanted` make room; of new ones for which there is none, only the range of
+    /// densities is remembered.
     pub fn insert(
         &mut self,
         mut pages: Vec<(PageAddress, Arc<Page>)>,
@@ -101,6 +102,16 @@ impl PageCache {
         if self.resident.pages().len() > room {
             let wanted: BTreeSet<_> = wanted.iter().copied().collect();
             self.resident.retain(|address| wanted.contains(&address));
+        }
+        let mut free = self.resident.capacity().saturating_sub(self.resident.pages().len());
+        for (_, page) in &mut pages {
+            if page.texels.is_empty() {
+                continue;
+            }
+            match free.checked_sub(1) {
+                Some(left) => free = left,
+                None => Arc::make_mut(page).texels = Vec::new(),
+            }
         }
         self.resident.insert(pages);
     }
@@ -118,4 +129,47 @@ pub fn read_pages(
     let read =
         |address: &PageAddress| Ok((*address, Arc::new(Page::from_source(source, *address, &is_visible)?)));
     addresses.par_iter().map(read).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::Range;
+
+    use super::*;
+    use crate::{Dataset, FinerLevels, Samples, Volume};
+    use glam::DVec3;
+
+    /// Level of 256³ voxels that are not the same all over.
+    #[derive(Debug)]
+    struct Ramp(FinerLevels);
+
+    impl PageSource for Ramp {
+        fn levels(&self) -> &FinerLevels {
+            &self.0
+        }
+
+        fn read(&self, _: usize, region: &[Range<usize>; 3]) -> Result<Vec<f32>, LoadError> {
+            let count: usize = region.iter().map(ExactSizeIterator::len).product();
+            Ok((0..count).map(|at| at as f32 / count as f32).collect())
+        }
+    }
+
+    #[test]
+    fn pages_beyond_the_capacity_are_only_remembered() {
+        let samples = Samples::U8((0..128 * 128 * 128).map(|at: usize| at as u8).collect());
+        let dataset = Dataset::new(Volume::with_spacing("ramp", [128; 3], DVec3::ONE, samples).unwrap());
+        let levels = FinerLevels::of_volume([128; 3], [([256; 3], "0".to_owned())]);
+        let mapping = dataset.volume().density_mapping();
+        // Room for three pages.
+        let bounds = Arc::clone(dataset.bricks());
+        let mut cache = PageCache::new(Arc::new(Ramp(levels)), mapping, bounds, 8 << 20);
+        let wanted: Vec<_> = (0..4).map(|x| PageAddress { level: 0, at: [x, 0, 0] }).collect();
+        let read = read_pages(&**cache.source(), &wanted, |_| true).unwrap();
+        cache.insert(read, &wanted, |_| true);
+        assert_eq!(cache.missing(&wanted), wanted[3..]);
+        assert_eq!(cache.resident().ranges().len(), 4);
+        let read = read_pages(&**cache.source(), &wanted[3..], |_| true).unwrap();
+        cache.insert(read, &wanted[2..], |_| true);
+        assert_eq!(cache.missing(&wanted), wanted[..2], "those that are not wanted make room");
+    }
 }

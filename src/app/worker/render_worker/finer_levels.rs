@@ -2,7 +2,7 @@
 //! on a thread of their own, and the picture is drawn again as they arrive.
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 use std::time::{Duration, Instant};
 
 use super::RenderWorker;
@@ -23,6 +23,9 @@ const REDRAW_INTERVAL: Duration = Duration::from_millis(1500);
 
 /// Interval of redraws in times of a picture: reading gets most of the processors.
 const REDRAW_PICTURES: u32 = 3;
+
+/// Batches that wait for the render thread at most, while it draws: some 180 MB. Reading pauses then.
+const MAX_WAITING_BATCHES: usize = 8;
 
 /// Batch of pages that a thread has read; `None` after the last.
 type PageBatch = Option<Result<Vec<(PageAddress, Arc<Page>)>, LoadError>>;
@@ -106,7 +109,7 @@ impl FinerLevelReader {
     ) {
         let Some(cache) = &self.cache else { return };
         let (source, shared) = (Arc::clone(cache.source()), Arc::clone(shared));
-        let (sender, batches) = channel();
+        let (sender, batches) = sync_channel(MAX_WAITING_BATCHES);
         let token = CancelToken::new();
         let cancel = CancelOnDrop::from(token.clone());
         let spawned = std::thread::Builder::new().name("finer_levels".to_owned()).spawn(move || {
