@@ -115,12 +115,17 @@ impl RenderSchedule {
         Some(dataset)
     }
 
+    /// Returns true if a scene or dataset was read that has yet to take the place of the present one.
+    pub(super) fn has_other_volume(&self) -> bool {
+        self.next_scene.is_some() || self.next_dataset.is_some()
+    }
+
     /// Returns true if a picture must be dropped: the window has closed or shows another volume, or a refinement
     /// belongs to an outdated request.
     pub(super) fn is_obsolete(&self, purpose: RenderPurpose, frame_request: &FrameRequest) -> bool {
         let is_other =
             purpose != RenderPurpose::Preview && Some(frame_request) != self.frame_request.as_ref();
-        self.is_closed || self.next_scene.is_some() || self.next_dataset.is_some() || is_other
+        self.is_closed || self.has_other_volume() || is_other
     }
 
     /// Returns true if a picture waits until the look has changed; its light volumes are filled meanwhile.

@@ -134,6 +134,11 @@ impl RenderWorker {
             self.measure_balance();
             self.prepare_upcoming();
             self.show_finer_levels();
+            if self.agenda.has_other_volume() {
+                // It has arrived meanwhile, and the request is of its generation: a picture of the present volume would be
+                // taken for one of it.
+                continue;
+            }
             let due = if self.scene.is_some() { self.agenda.due() } else { NextRender::OnMailboxChange };
             let rest = match due {
                 NextRender::Now(purpose, frame_request) => {
