@@ -202,7 +202,7 @@ impl ExportWindow {
     ) -> Result<(), String> {
         let Self { image_spec: ImageSpec { transparent, marks, .. }, .. } = *self;
         let image_spec = ImageSpec { transparent, marks, ..ImageSpec::new(size) };
-        self.run(ctx, move |_| worker::render_for_clipboard(&subject, &image_spec))
+        self.run(ctx, move |job| worker::render_for_clipboard(&subject, &image_spec, job))
     }
 
     /// Starts to render all kept views and looks into one picture.

@@ -139,25 +139,30 @@ impl ExportWorker {
         settings: &Settings,
         image_spec: &ImageSpec,
     ) -> Result<Vec<u8>, String> {
-        self.render_with_record(subject, settings, image_spec).map(|(shown, _)| shown)
+        let drawn = self.render_cancellably(subject, settings, image_spec, &CancelToken::never());
+        drawn.map(|(shown, _)| shown).map_err(|end| end.into_result().err().unwrap_or_default())
     }
 
-    /// Renders a picture as [`Self::render`] does, and returns the record of its finer levels.
-    fn render_with_record(
+    /// Renders a picture as [`Self::render`] does, unless it is cancelled while pages of finer levels are read. Returns their
+    /// record, too.
+    fn render_cancellably(
         &mut self,
         subject: &ExportScene,
         settings: &Settings,
         image_spec: &ImageSpec,
-    ) -> Result<(Vec<u8>, Option<FinerLevelRecord>), String> {
+        token: &CancelToken,
+    ) -> Result<(Vec<u8>, Option<FinerLevelRecord>), ExportEnd> {
         let (dataset, mut pages) = self.take_pages(subject, settings, image_spec);
-        let parts = pages.as_mut().map(|pages| PartPages::new(&mut pages.cache, |_| true));
-        let shown = self.renderer.bands(&dataset, settings, image_spec).with_pages(parts).all();
-        let mut shown = shown.map_err(|err| err.to_string())?;
+        let parts = pages.as_mut().map(|pages| PartPages::new(&mut pages.cache, |_| !token.is_cancelled()));
+        let mut shown = match self.renderer.bands(&dataset, settings, image_spec).with_pages(parts).all() {
+            Err(_) if token.is_cancelled() => return Err(ExportEnd::Cancelled),
+            drawn => drawn?,
+        };
         let finer_levels = self.put_back(pages);
         marks_layer(image_spec, settings, subject.dataset.volume()).composite_over(image_spec, 0, &mut shown);
         match shown {
             PixelRows::Bytes(shown) => Ok((shown, finer_levels)),
-            PixelRows::Floats(_) => Err(text::export::EMPTY_PICTURE.to_owned()),
+            PixelRows::Floats(_) => Err(ExportEnd::Failed(text::export::EMPTY_PICTURE.to_owned())),
         }
     }
 
@@ -285,7 +290,7 @@ pub(crate) fn export_animation(
             let scene = motion.scene_at(subject, frame, animation_spec.frames, job.token());
             let scene = scene.map_err(ExportEnd::Failed)?;
             let (shown, finer) =
-                worker.render_with_record(&scene, &scene.settings, &image_spec).map_err(ExportEnd::Failed)?;
+                worker.render_cancellably(&scene, &scene.settings, &image_spec, job.token())?;
             file.add(&shown, &worker.picture_record(&scene, &scene.settings, &image_spec, folder, finer))?;
         }
         file.finish()?;
@@ -308,7 +313,7 @@ pub(crate) fn export_kept_sheet(
         for (at, kept) in (0..).zip(kept) {
             report_progress(job, at, subject.settings.kept.len() as u32)?;
             let settings = settings_for_kept(&kept.what, &subject.settings);
-            let shown = worker.render(subject, &settings, &image_spec).map_err(ExportEnd::Failed)?;
+            let (shown, _) = worker.render_cancellably(subject, &settings, &image_spec, job.token())?;
             sheet.add(&kept.name, &shown);
         }
         Ok(())
@@ -336,8 +341,14 @@ pub(crate) fn settings_for_kept(what: &SavedContent, settings: &Settings) -> Set
 pub(crate) fn render_for_clipboard(
     subject: &ExportScene,
     image_spec: &ImageSpec,
+    job: &JobControl,
 ) -> Result<ExportOutcome, String> {
-    let shown = ExportWorker::new(subject)?.render(subject, &subject.settings, image_spec)?;
+    let mut worker = ExportWorker::new(subject)?;
     let size = image_spec.size.map(|n| n as usize);
-    Ok(ExportOutcome::Picture(egui::ColorImage::from_rgba_unmultiplied(size, &shown)))
+    let picture = |(shown, _): (Vec<u8>, _)| {
+        ExportOutcome::Picture(egui::ColorImage::from_rgba_unmultiplied(size, &shown))
+    };
+    worker
+        .render_cancellably(subject, &subject.settings, image_spec, job.token())
+        .map_or_else(ExportEnd::into_result, |drawn| Ok(picture(drawn)))
 }
