@@ -80,6 +80,7 @@ fn open_window(request: ViewerRequest) -> Result<(), CliError> {
         session: request.session,
         saves_on_close: request.saves_on_close,
         volume: request.volume,
+        is_temporary: request.is_temporary,
         trust_paths: request.trust_paths,
         adjust: None,
         pipelines: None,

@@ -99,10 +99,14 @@ class Viewer:
         self.look.save(self._session)
         source = self.volume._source
         path = source[0] if source is not None and not any(source[1].values()) else None
+        is_copy = path is None
         if path is None:
             path = str(folder / f"{_file_name(self.volume.name)}.nrrd")
             self.volume.save(path)
         command = [program(), path, "--session", str(self._session), "--save-on-close"]
+        if is_copy:
+            # It is deleted with the folder, and must not stay in the list of recent files.
+            command.append("--temporary")
         self._process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
 
     def wait(self) -> Look:

@@ -37,6 +37,7 @@ def test_the_look_of_the_window_comes_back(window, chair, chair_look):
     seen = []
     viewer = ch.Viewer(chair, chair_look, on_change=seen.append)
     assert json.loads(arguments.read_text())[0] == "builtin:chair:32"
+    assert "--temporary" not in json.loads(arguments.read_text())
     assert viewer.look["shadows.strength"] == 0.25
     assert seen == [viewer.look]
     assert chair_look["shadows.strength"] != 0.25, "the look that was given stays"
@@ -50,6 +51,7 @@ def test_arrays_are_shown_as_files(window, ball):
     viewer = ch.Viewer(volume, wait=False)
     viewer.wait()
     assert json.loads(arguments.read_text())[0].endswith("a-b-.nrrd")
+    assert "--temporary" in json.loads(arguments.read_text()), "it is not listed among the recent files"
 
 
 def test_volumes_are_saved(ball, tmp_path):

@@ -45,6 +45,9 @@ struct CommandLine {
     /// Volume of the session or picture (FILE or --session), if it is not at the recorded path
     #[arg(long, value_name = "FILE")]
     volume: Option<PathBuf>,
+    /// List FILE neither among the recent files nor elsewhere, as it is deleted when the window is closed
+    #[arg(long, requires = "file")]
+    temporary: bool,
     /// Open volumes at the paths recorded in sessions and pictures, without asking
     #[arg(long)]
     trust_paths: bool,
@@ -65,6 +68,7 @@ impl CommandLine {
             session,
             save_on_close,
             volume,
+            temporary,
             trust_paths,
             load,
             #[cfg(feature = "faults")]
@@ -85,6 +89,7 @@ impl CommandLine {
             session,
             saves_on_close: save_on_close,
             volume,
+            is_temporary: temporary,
             trust_paths,
         })
     }
@@ -134,6 +139,8 @@ pub struct ViewerRequest {
     pub saves_on_close: bool,
     /// Volume of a look, from `--volume`.
     pub volume: Option<PathBuf>,
+    /// True if nothing is remembered of `source`, from `--temporary`.
+    pub is_temporary: bool,
     /// True if recorded paths of volumes are trusted, from `--trust-paths`.
     pub trust_paths: bool,
 }

@@ -82,6 +82,8 @@ pub(crate) struct PersistentState {
     /// True while writes fail, which was reported.
     is_failing: bool,
     folder: Option<PathBuf>,
+    /// Absolute path of a file that is deleted when the window is closed, of which nothing is remembered.
+    temporary: Option<PathBuf>,
     // Drop order: everything is written before the run ends.
     keeper: Option<AutosaveThread>,
     run: Option<CurrentRun>,
@@ -142,12 +144,18 @@ impl PersistentState {
         self.folder.as_deref().map_or_else(RecentThumbnails::default, RecentThumbnails::new)
     }
 
+    /// Names a file that is deleted when the window is closed: nothing is remembered of it.
+    pub(crate) fn set_temporary_file(&mut self, source: &Path) {
+        self.temporary = absolute_path(source);
+    }
+
+    fn is_temporary(&self, source: &Path) -> bool {
+        self.temporary.is_some() && self.temporary == absolute_path(source)
+    }
+
     /// Adds a file and the choice of its volume to the recent files. Built-in volumes have a menu of their own.
     pub(crate) fn add_recent(&mut self, source: &Path, choice: &VolumeChoice) {
-        if is_builtin(source) {
-            return;
-        }
-        let path = std::path::absolute(source).unwrap_or_else(|_| source.to_owned());
+        let Some(path) = absolute_path(source).filter(|_| !self.is_temporary(source)) else { return };
         let latest = RecentFile { path, choice: choice.clone() };
         recent_files::put_first(&mut self.recent, latest.clone());
         if let Some(keeper) = &self.keeper {
@@ -163,7 +171,7 @@ impl PersistentState {
 
     /// Remembers the up axis for the folder of a file. Built-in volumes have no folder.
     pub(crate) fn remember_up(&mut self, source: &Path, up: SceneAxis) {
-        let Some(folder) = folder_of(source) else { return };
+        let Some(folder) = folder_of(source).filter(|_| !self.is_temporary(source)) else { return };
         let latest = FolderOrientation { folder, up };
         folder_orientation::put_first(&mut self.standing, latest.clone());
         if let Some(keeper) = &self.keeper {
@@ -185,7 +193,7 @@ impl PersistentState {
         opened_id: u64,
         by: Corrections,
     ) {
-        let Some(file) = absolute_path(source) else { return };
+        let Some(file) = absolute_path(source).filter(|_| !self.is_temporary(source)) else { return };
         let latest = CorrectedFile::new(file, stamp, opened_id, by);
         corrected_files::put_first(&mut self.corrected, latest.clone());
         if let Some(keeper) = &self.keeper {

@@ -49,6 +49,7 @@ impl App {
             session,
             saves_on_close,
             volume,
+            is_temporary,
             trust_paths,
             adjust,
             light_search_limit_s,
@@ -70,6 +71,9 @@ impl App {
         app.opening.adjust_first_look = adjust;
         app.editor.light_search_limit_s = light_search_limit_s.unwrap_or(SEARCH_LIMIT_S);
         app.opening.requests.trusts_paths = trust_paths;
+        if let Some(source) = source.as_deref().filter(|_| is_temporary) {
+            app.editor.memory.set_temporary_file(source);
+        }
         app.opener(&cc.egui_ctx).open_first(source.as_deref(), volume.as_deref());
         Ok(app)
     }

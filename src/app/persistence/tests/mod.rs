@@ -55,6 +55,25 @@ fn paths(memory: &PersistentState) -> Vec<PathBuf> {
 }
 
 #[test]
+fn nothing_is_remembered_of_a_temporary_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut memory = remember(folder.path());
+    let [copy, other] = ["copy.nrrd", "other.nrrd"].map(|name| folder.path().join(name));
+    memory.set_temporary_file(&copy);
+    let stamp = FileStamp::default();
+    for file in [&copy, &other] {
+        memory.add_recent(file, &VolumeChoice::default());
+        memory.remember_corrections(file, stamp, 1, Corrections::default());
+    }
+    assert_eq!(paths(&memory), std::slice::from_ref(&other));
+    assert!(memory.corrections_of(&copy).is_none() && memory.corrections_of(&other).is_some());
+    memory.remember_up(&copy, SceneAxis::PlusY);
+    assert_eq!(memory.up_of(&copy), None);
+    memory.remember_up(&other, SceneAxis::PlusY);
+    assert_eq!(memory.up_of(&copy), Some(SceneAxis::PlusY), "the folder has one");
+}
+
+#[test]
 fn files_are_remembered_by_all_windows() {
     let folder = tempfile::tempdir().unwrap();
     let mut memory = remember(folder.path());
