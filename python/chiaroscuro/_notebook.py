@@ -165,7 +165,8 @@ class PictureWidget(jupyter_rfb.RemoteFrameBuffer):
         coarseness = self._coarseness
         began = time.perf_counter()
         size = (max(1, width // coarseness), max(1, height // coarseness))
-        preview = look.with_(settings={"output.antialiasing": 1})
+        # Reading parts of finer levels would hold the hand up.
+        preview = look.with_(settings={"output.antialiasing": 1, "sampling.finer_levels": False})
         picture = self._renderer.render(self._viewer.volume, preview, size=size)
         took = time.perf_counter() - began
         self._last_s = time.monotonic()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import threading
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -16,7 +17,7 @@ from ._volume import Volume
 #: Options that belong to a volume, and not to its look.
 VOLUME_OPTIONS = (
     "scale", "spacing", "translate", "units", "name", "kind", "channel_axis", "reduce", "channel", "frame",
-    "component", "series", "array",
+    "component", "series", "array", "level",
 )  # fmt: skip
 
 
@@ -28,17 +29,22 @@ class Renderer:
 
     Args:
         adapter: number of the graphics adapter, counted from the fastest, which is 0.
+        memory: memory for finer resolution levels than the one that a volume has in memory, in bytes or as a text such
+            as ``"2 GiB"``. Pictures show the level that their pixels call for, and read what is missing in parts that
+            fit. By default at most 1 GiB and a quarter of what is free, and a level that was named
+            (``Volume(path, level=2)``) is shown alone; with ``memory`` finer ones are shown as well.
 
     Raises:
         NoAdapter: there is none; the message says what to install.
+        InvalidArgument: memory is no size.
 
     >>> with Renderer() as renderer:
     ...     renderer.render(Volume("builtin:chair:16"), size=(8, 6)).shape
     (6, 8, 4)
     """
 
-    def __init__(self, adapter: int = 0) -> None:
-        self._native = _native.NativeRenderer(adapter)
+    def __init__(self, adapter: int = 0, *, memory: int | str | None = None) -> None:
+        self._native = _native.NativeRenderer(adapter, None if memory is None else _bytes(memory))
 
     @property
     def adapter(self) -> str:
@@ -136,6 +142,16 @@ def _size(size: Sequence[int]) -> tuple[int, int]:
     if width < 1 or height < 1 or max(width, height) > 2**31:
         raise InvalidArgument(f"size: expected (width, height) in pixels, found {size!r}")
     return width, height
+
+
+def _bytes(memory: int | str) -> int:
+    """Returns a size in bytes, of a number or of a text with a unit."""
+    units = {"": 1, "b": 1, "k": 2**10, "kib": 2**10, "m": 2**20, "mib": 2**20, "g": 2**30, "gib": 2**30}
+    parts = re.fullmatch(r"\s*([0-9]+(?:\.[0-9]+)?)\s*([a-z]*)\s*", str(memory).lower())
+    size = float(parts[1]) * units.get(parts[2], 0) if parts else 0.0
+    if not 1 <= size < 2**63:
+        raise InvalidArgument(f'memory: expected bytes, or a text such as "512 MiB" or "2 GiB", found {memory!r}')
+    return int(size)
 
 
 def _samples(samples: int) -> int:

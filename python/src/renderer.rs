@@ -1,16 +1,17 @@
 //! Renderer as a Python object: one graphics device, and what it keeps between pictures.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use chiaroscuro_media::PixelRows;
-use chiaroscuro_render::plan::{RenderRequest, probe_layers};
+use chiaroscuro_render::plan::{PagedView, RenderRequest, probe_layers};
 use chiaroscuro_render::{
-    GpuContext, GpuError, RenderOptions, Renderer, WorkOptions, complete_first_look, downsample_to_fit,
+    BandError, GpuContext, GpuError, PartPages, RenderOptions, Renderer, WorkOptions, complete_first_look,
+    downsample_to_fit,
 };
 use chiaroscuro_scene::{
     ImageSpec, LightStorage, MAX_IMAGE_EDGE, MAX_SAMPLES_PER_EDGE, PixelFormat, Settings,
 };
-use chiaroscuro_volume::{Dataset, VolumeId};
+use chiaroscuro_volume::{CancelToken, Dataset, PageCache, VolumeId};
 use numpy::{IntoPyArray as _, PyArrayMethods as _};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -18,7 +19,7 @@ use pyo3::types::PyDict;
 use crate::errors::{self, ExceptionClass};
 use crate::interruptible::interruptible;
 use crate::look::NativeLook;
-use crate::volume::NativeVolume;
+use crate::volume::{LevelFile, NativeVolume};
 
 /// Size of the picture with which a light volume is filled, in pixels; the light volume does not depend on it.
 const LIGHT_VOLUME_PICTURE: [u32; 2] = [16, 16];
@@ -29,6 +30,10 @@ struct OpenRenderer {
     renderer: Renderer,
     /// Last volume, with what is drawn of it: itself, or a smaller one if the device cannot hold it.
     fitted: Option<(VolumeId, Dataset)>,
+    /// Memory for pages of finer levels, in bytes; `None` for the default, which does not show those of a named level.
+    page_bytes: Option<u64>,
+    /// Pages that pictures of the last volume have read.
+    pages: Option<(VolumeId, PageCache)>,
 }
 
 /// Renderer on a graphics device. Calls from several threads wait for each other.
@@ -64,6 +69,49 @@ impl OpenRenderer {
         }
         self.fitted = Some((id, fitted.clone()));
         Ok(fitted)
+    }
+}
+
+impl OpenRenderer {
+    /// Draws a picture in bands; what it shows of finer levels is read for one part after another.
+    fn draw(
+        &mut self,
+        volume: &NativeVolume,
+        settings: &Settings,
+        spec: &ImageSpec,
+    ) -> Result<PixelRows, BandError> {
+        let fitted = self.fitting(&volume.dataset)?;
+        let mapping = settings.shown_content(&fitted.volume().ranges());
+        let dataset = fitted.with_density_mapping(mapping);
+        let is_whole = fitted.id() == volume.dataset.id();
+        let file = volume.file.as_ref().filter(|_| is_whole && settings.sampling.finer_levels);
+        let mut cache = file.and_then(|file| self.take_pages(file, &dataset));
+        let shows_finer = cache.as_ref().is_some_and(|cache| {
+            let size = spec.size.map(|n| n * spec.samples);
+            PagedView::new(cache.resident().levels(), settings, &dataset.volume().scene(), size).is_some()
+        });
+        let token = CancelToken::current();
+        let parts = cache.as_mut().filter(|_| shows_finer);
+        let parts = parts.map(|cache| PartPages::new(cache, |_| !token.is_cancelled()));
+        let rows = self.renderer.bands(&dataset, settings, spec).with_pages(parts).all();
+        if let Some(cache) = cache {
+            self.pages = Some((dataset.id(), cache));
+        }
+        rows
+    }
+
+    /// Returns the pages of a volume that earlier pictures have read, or an empty cache; `None` if its finer levels are not
+    /// shown.
+    fn take_pages(&mut self, file: &LevelFile, dataset: &Dataset) -> Option<PageCache> {
+        if file.is_named && self.page_bytes.is_none() {
+            return None;
+        }
+        let id = dataset.id();
+        let known = self.pages.take().filter(|(known, _)| *known == id);
+        known.map(|(_, cache)| cache).or_else(|| {
+            let bytes = self.page_bytes.unwrap_or_else(PageCache::default_bytes);
+            Some(dataset.page_cache(Arc::new(file.pages(dataset, bytes)?), bytes))
+        })
     }
 }
 
@@ -129,13 +177,14 @@ impl NativeRenderer {
 
 #[pymethods]
 impl NativeRenderer {
-    /// Opens an adapter, counted from the fastest, which is 0.
+    /// Opens an adapter, counted from the fastest, which is 0. Pages of finer levels take at most `page_bytes` of memory.
     #[new]
-    fn new(py: Python<'_>, adapter: usize) -> PyResult<Self> {
+    fn new(py: Python<'_>, adapter: usize, page_bytes: Option<u64>) -> PyResult<Self> {
         let opened = interruptible(py, || {
             let context = GpuContext::headless_on(adapter)?;
-            let open = Box::new(OpenRenderer { renderer: Renderer::new(&context)?, fitted: None });
-            Ok((open, context.description()))
+            let renderer = Renderer::new(&context)?;
+            let open = OpenRenderer { renderer, fitted: None, page_bytes, pages: None };
+            Ok((Box::new(open), context.description()))
         })?;
         let (open, adapter) = opened.map_err(|err| errors::from_gpu(&err))?;
         Ok(Self { open: Mutex::new(Some(open)), adapter })
@@ -171,10 +220,7 @@ impl NativeRenderer {
         request: PictureRequest,
     ) -> PyResult<Bound<'py, PyAny>> {
         let spec = request.image_spec()?;
-        let rows = self.with_renderer(py, |open| {
-            let dataset = open.fitting(&volume.dataset)?;
-            Ok(open.renderer.bands(&dataset, &look.settings, &spec).all())
-        })?;
+        let rows = self.with_renderer(py, |open| Ok(open.draw(volume, &look.settings, &spec)))?;
         let rows = rows.map_err(|err| errors::from_band(&err))?;
         let [width, height] = spec.size.map(|edge| edge as usize);
         let shape = [height, width, 4];

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use chiaroscuro_scene::first_look;
 use chiaroscuro_volume::{
-    Corrections, Dataset, Downsampling, LoadControl, Portion, Samples, ValueMeaning, ValueMetadata, Volume,
-    VolumeChoice, with_samples,
+    Corrections, Dataset, Downsampling, LevelRule, LoadControl, Portion, Samples, ValueMeaning,
+    ValueMetadata, Volume, VolumeChoice, with_samples,
 };
 use chiaroscuro_volume_io::write::{ExportVolume, VolumeFormat, write_volume};
-use chiaroscuro_volume_io::{LoadOptions, open};
+use chiaroscuro_volume_io::{FilePages, LoadOptions, open};
 use glam::{DAffine3, DMat3, DVec3};
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::prelude::*;
@@ -22,6 +22,25 @@ use crate::voxel_buffer::VoxelBuffer;
 #[derive(Debug)]
 pub(crate) struct NativeVolume {
     pub(crate) dataset: Dataset,
+    /// File whose finer levels pictures show; `None` for other volumes, and where these levels cannot be shown.
+    pub(crate) file: Option<LevelFile>,
+}
+
+/// File of a volume, of which levels are read that are finer than the one in memory.
+#[derive(Debug)]
+pub(crate) struct LevelFile {
+    path: PathBuf,
+    options: LoadOptions,
+    /// True if the level in memory was named, and is shown alone unless memory for finer ones was asked for.
+    pub(crate) is_named: bool,
+}
+
+impl LevelFile {
+    /// Returns a reader of the levels that are finer than a dataset, whose blocks take at most `cache_bytes`; `None` if there
+    /// are none, or they cannot be shown.
+    pub(crate) fn pages(&self, dataset: &Dataset, cache_bytes: u64) -> Option<FilePages> {
+        FilePages::new(&self.path, &self.options, dataset, cache_bytes).ok()
+    }
 }
 
 /// Facts about an array that its voxels do not say.
@@ -105,6 +124,10 @@ impl FileSelection {
     /// Converts the selection to the readers' options.
     fn load_options(self) -> LoadOptions {
         let Self { reduce, channel, frame, component, series, array, level } = self;
+        let rule = match level {
+            Some(_) => LevelRule::Finest,
+            None => LevelRule::BesidePages(LevelRule::CARD_VOXELS),
+        };
         let portion = reduce.map(|block| Portion { region: None, thinning: Downsampling::Average(block) });
         let choice = VolumeChoice {
             channel,
@@ -116,7 +139,14 @@ impl FileSelection {
             portion,
             ..VolumeChoice::default()
         };
-        LoadOptions { choice, ..LoadOptions::default() }
+        LoadOptions { choice, level: rule, ..LoadOptions::default() }
+    }
+}
+
+impl NativeVolume {
+    /// Creates a volume without finer levels.
+    fn from_dataset(dataset: Dataset) -> Self {
+        Self { dataset, file: None }
     }
 }
 
@@ -126,23 +156,24 @@ impl NativeVolume {
     #[staticmethod]
     fn open(py: Python<'_>, source: PathBuf, selection: FileSelection) -> PyResult<Self> {
         let options = selection.load_options();
-        interruptible(py, || open(&source, &options, &LoadControl::new()).map(Dataset::new))?
-            .map(|dataset| Self { dataset })
-            .map_err(|err| errors::from_load(&err))
+        let dataset = interruptible(py, || open(&source, &options, &LoadControl::new()).map(Dataset::new))?
+            .map_err(|err| errors::from_load(&err))?;
+        let is_named = options.choice.level.is_some();
+        Ok(Self { dataset, file: Some(LevelFile { path: source, options, is_named }) })
     }
 
     /// Creates a volume of the voxels in a buffer.
     #[staticmethod]
     fn from_voxels(py: Python<'_>, voxels: &VoxelBuffer, facts: ArrayFacts) -> PyResult<Self> {
         let samples = voxels.take()?;
-        interruptible(py, || facts.volume(samples).map(Dataset::new))?.map(|dataset| Self { dataset })
+        interruptible(py, || facts.volume(samples).map(Dataset::new))?.map(Self::from_dataset)
     }
 
     /// Returns this volume with the first field of another shown over it.
     fn with_field(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
         let source = other.dataset.volume().name().to_owned();
         interruptible(py, || self.dataset.with_field(other.dataset.volume(), source))?
-            .map(|dataset| Self { dataset })
+            .map(Self::from_dataset)
             .map_err(errors::from_field)
     }
 
@@ -157,7 +188,7 @@ impl NativeVolume {
         })?
         .map_err(|err| errors::from_volume(&err))?;
         let is_found = !dataset.volume().lacks_table();
-        Ok((Self { dataset }, is_found))
+        Ok((Self::from_dataset(dataset), is_found))
     }
 
     /// Name of the volume: that of its file or of the built-in volume.

@@ -48,6 +48,38 @@ def test_a_saved_look_makes_the_bytes_of_the_program(program, chair, chair_look,
     assert not np.array_equal(renderer.render(chair, look, size=SIZE, samples=2, transparent=True), of_program)
 
 
+def test_finer_levels_are_drawn_as_the_program_draws_them(program, renderer, tmp_path):
+    image = tmp_path / "chair.ome.zarr"
+    run(program, "convert", "builtin:chair:256", image)
+    coarse = ch.Volume(image, level=1)
+    assert coarse.shape == (128, 128, 128)
+    look = ch.Look.auto(coarse, renderer=renderer)
+    look.save(tmp_path / "look.json")
+    # Pixels are finer than the voxels in memory.
+    size = (320, 240)
+    alone = renderer.render(coarse, look, size=size)
+    with ch.Renderer(memory="64 MiB") as paged:
+        picture = paged.render(coarse, look, size=size)
+        np.testing.assert_array_equal(paged.render(coarse, look, size=size), picture)
+    arguments = [
+        image,
+        "--level",
+        1,
+        "-o",
+        tmp_path / "a.png",
+        "--size",
+        "320x240",
+        "--session",
+        tmp_path / "look.json",
+    ]
+    run(program, "render", *arguments, "--pool", "64MiB", "--out-of-core")
+    np.testing.assert_array_equal(picture, np.asarray(Image.open(tmp_path / "a.png").convert("RGBA")))
+    assert np.abs(picture.astype(int) - alone).mean() > 0.1, "a level that was named is shown alone by default"
+    for wrong in ("64 MB", "", 0, "-1"):
+        with pytest.raises(ch.InvalidArgument, match="memory"):
+            ch.Renderer(memory=wrong)
+
+
 def test_a_turn_makes_the_frames_of_the_program(program, chair, chair_look, renderer, tmp_path):
     chair_look.save(tmp_path / "look.json")
     session = ["--session", tmp_path / "look.json"]
