@@ -60,10 +60,10 @@ fn nothing_is_remembered_of_a_temporary_file() {
     let mut memory = remember(folder.path());
     let [copy, other] = ["copy.nrrd", "other.nrrd"].map(|name| folder.path().join(name));
     memory.set_temporary_file(&copy);
-    let stamp = FileStamp::default();
+    let by = Corrections { spacing: Some([2.0; 3]), ..Corrections::default() };
     for file in [&copy, &other] {
         memory.add_recent(file, &VolumeChoice::default());
-        memory.remember_corrections(file, stamp, 1, Corrections::default());
+        memory.remember_corrections(file, FileStamp::default(), 1, by);
     }
     assert_eq!(paths(&memory), std::slice::from_ref(&other));
     assert!(memory.corrections_of(&copy).is_none() && memory.corrections_of(&other).is_some());
