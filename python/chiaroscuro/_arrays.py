@@ -64,11 +64,21 @@ def image_of(data: Any) -> ArrayImage:
     if hasattr(data, "GetPointData") and hasattr(data, "GetDimensions"):
         return _from_vtk(data)
     if hasattr(data, "detach") and hasattr(data, "cpu"):
-        # A tensor of torch.
-        return ArrayImage(data.detach().cpu().numpy())
+        return _from_torch(data)
     if hasattr(data, "shape") and hasattr(data, "dtype") and hasattr(data, "__getitem__"):
         return ArrayImage(data)
     return ArrayImage(np.asarray(data))
+
+
+def _from_torch(data: Any) -> ArrayImage:
+    """Takes the values of a tensor; brain floats become floats, which have all of their values."""
+    tensor = data.detach().cpu()
+    if str(tensor.dtype) == "torch.bfloat16":
+        tensor = tensor.float()
+    try:
+        return ArrayImage(tensor.numpy())
+    except TypeError as error:
+        raise InvalidArgument(f"the tensor cannot be read as an array: {error}") from error
 
 
 def _from_xarray(data: Any) -> ArrayImage:
