@@ -66,7 +66,8 @@ portable_build() {
     # cargo-auditable is given as the compiler's wrapper by its name, as `cargo auditable` would give it by its absolute
     # path: cargo hashes the text into the names of symbols, and the bytes would depend on where the tool lies.
     CARGO_PROFILE_RELEASE_STRIP=symbols \
-        RUSTC_WORKSPACE_WRAPPER=cargo-auditable CARGO_AUDITABLE_ORIG_ARGS='[]' \
+        RUSTC_WORKSPACE_WRAPPER=cargo-auditable \
+        CARGO_AUDITABLE_ORIG_ARGS='{"offline":false,"locked":true,"frozen":false,"config":[]}' \
         CARGO_ZIGBUILD_ZIG_PATH=$tools_folder/ziglang/zig CARGO_ZIGBUILD_CACHE_DIR=$tools_folder/cache \
         ZIG_GLOBAL_CACHE_DIR=$tools_folder/cache/zig ZIG_LOCAL_CACHE_DIR=$tools_folder/cache/zig \
         cargo zigbuild --release --locked "$@" \
