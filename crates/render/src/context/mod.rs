@@ -28,8 +28,11 @@ use chiaroscuro_files::{
 };
 
 /// Advice in the error message when there is no adapter.
-const ADAPTER_HELP: &str =
-    "install a Vulkan driver (on Debian: mesa-vulkan-drivers, which also brings a software one)";
+const ADAPTER_HELP: &str = if cfg!(windows) {
+    "install the driver of the graphics card from its maker; where Direct3D fails, WGPU_BACKEND=vulkan chooses Vulkan"
+} else {
+    "install a Vulkan driver (on Debian: mesa-vulkan-drivers, which also brings a software one)"
+};
 
 /// Advice when a device was opened with fewer features than its adapter has, and too few.
 const DEVICE_HELP: &str = "open the device with the features of chiaroscuro_render::device_descriptor";
