@@ -71,7 +71,7 @@ def image_of(data: Any) -> ArrayImage:
 
 
 def _from_torch(data: Any) -> ArrayImage:
-    """Takes the values of a tensor; brain floats become floats, which have all of their values."""
+    """Takes the values of a tensor; those of bfloat16, which NumPy lacks, become float32, which has all of them."""
     tensor = data.detach().cpu()
     if str(tensor.dtype) == "torch.bfloat16":
         tensor = tensor.float()

@@ -70,9 +70,7 @@ impl OpenRenderer {
         self.fitted = Some((id, fitted.clone()));
         Ok(fitted)
     }
-}
 
-impl OpenRenderer {
     /// Draws a picture in bands; what it shows of finer levels is read for one part after another.
     fn draw(
         &mut self,

@@ -22,11 +22,11 @@ use crate::voxel_buffer::VoxelBuffer;
 #[derive(Debug)]
 pub(crate) struct NativeVolume {
     pub(crate) dataset: Dataset,
-    /// File whose finer levels pictures show; `None` for other volumes, and where these levels cannot be shown.
+    /// File that the volume was read from; `None` for arrays, layers and corrected volumes.
     pub(crate) file: Option<LevelFile>,
 }
 
-/// File of a volume, of which levels are read that are finer than the one in memory.
+/// File of a volume, of which resolution levels are read that are finer than the one in memory.
 #[derive(Debug)]
 pub(crate) struct LevelFile {
     path: PathBuf,

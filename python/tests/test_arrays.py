@@ -169,8 +169,8 @@ def test_nibabel_and_simpleitk_agree_on_the_place(ball):
 def test_tensors_are_taken(ball):
     torch = pytest.importorskip("torch")
     np.testing.assert_array_equal(voxels(torch.from_numpy(ball.astype(np.int16))), ball)
-    brain_floats = torch.from_numpy((ball > 0).astype(np.float32)).to(torch.bfloat16)
-    np.testing.assert_array_equal(voxels(brain_floats), ball > 0)
+    bfloat16 = torch.from_numpy((ball > 0).astype(np.float32)).to(torch.bfloat16)
+    np.testing.assert_array_equal(voxels(bfloat16), ball > 0)
     with pytest.raises(ch.InvalidArgument, match="tensor"):
         ch.Volume(torch.from_numpy(ball.astype(np.float32)).to_sparse())
 

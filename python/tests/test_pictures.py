@@ -58,6 +58,7 @@ def test_finer_levels_are_drawn_as_the_program_draws_them(program, renderer, tmp
     # Pixels are finer than the voxels in memory.
     size = (320, 240)
     alone = renderer.render(coarse, look, size=size)
+    np.testing.assert_array_equal(ch.render(image, level=1, look=look, size=size, renderer=renderer), alone)
     with ch.Renderer(memory="64 MiB") as paged:
         picture = paged.render(coarse, look, size=size)
         np.testing.assert_array_equal(paged.render(coarse, look, size=size), picture)

@@ -155,7 +155,10 @@ impl PersistentState {
 
     /// Adds a file and the choice of its volume to the recent files. Built-in volumes have a menu of their own.
     pub(crate) fn add_recent(&mut self, source: &Path, choice: &VolumeChoice) {
-        let Some(path) = absolute_path(source).filter(|_| !self.is_temporary(source)) else { return };
+        if is_builtin(source) || self.is_temporary(source) {
+            return;
+        }
+        let path = std::path::absolute(source).unwrap_or_else(|_| source.to_owned());
         let latest = RecentFile { path, choice: choice.clone() };
         recent_files::put_first(&mut self.recent, latest.clone());
         if let Some(keeper) = &self.keeper {

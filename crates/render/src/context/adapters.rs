@@ -1,9 +1,15 @@
 //! Selection of the graphics adapter, the features of its device, and the error message if there is none.
 
-use super::ADAPTER_HELP;
 use super::gpu_clock::GpuClock;
 use crate::GpuError;
 use chiaroscuro_files::sanitised;
+
+/// Advice in the error message when there is no adapter.
+pub(super) const ADAPTER_HELP: &str = if cfg!(windows) {
+    "install the driver of the graphics card from its maker; where Direct3D fails, WGPU_BACKEND=vulkan chooses Vulkan"
+} else {
+    "install a Vulkan driver (on Debian: mesa-vulkan-drivers, which also brings a software one)"
+};
 
 /// Environment variable that selects an adapter by a part of its name.
 const ADAPTER_NAME_VARIABLE: &str = "WGPU_ADAPTER_NAME";

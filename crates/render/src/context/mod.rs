@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 pub use self::adapters::device_descriptor;
-use self::adapters::{OPTIONAL_FEATURES, check_driver};
+use self::adapters::{ADAPTER_HELP, OPTIONAL_FEATURES, check_driver};
 pub use self::address_space::check_driver_address_space;
 pub(super) use self::address_space::{COMPILER_ADDRESS_BYTES, check_address_space};
 use self::device_errors::DeviceErrors;
@@ -25,13 +25,6 @@ use super::GpuError;
 use chiaroscuro_files::{
     fault::{self, FaultEvent, InjectedFault},
     sanitised,
-};
-
-/// Advice in the error message when there is no adapter.
-const ADAPTER_HELP: &str = if cfg!(windows) {
-    "install the driver of the graphics card from its maker; where Direct3D fails, WGPU_BACKEND=vulkan chooses Vulkan"
-} else {
-    "install a Vulkan driver (on Debian: mesa-vulkan-drivers, which also brings a software one)"
 };
 
 /// Advice when a device was opened with fewer features than its adapter has, and too few.
