@@ -45,7 +45,7 @@ struct CommandLine {
     /// Volume of the session or picture (FILE or --session), if it is not at the recorded path
     #[arg(long, value_name = "FILE")]
     volume: Option<PathBuf>,
-    /// List FILE neither among the recent files nor elsewhere, as it is deleted when the window is closed
+    /// FILE is deleted when the window is closed: do not list it among the recent files
     #[arg(long, requires = "file")]
     temporary: bool,
     /// Open volumes at the paths recorded in sessions and pictures, without asking
@@ -139,7 +139,7 @@ pub struct ViewerRequest {
     pub saves_on_close: bool,
     /// Volume of a look, from `--volume`.
     pub volume: Option<PathBuf>,
-    /// True if nothing is remembered of `source`, from `--temporary`.
+    /// True if `source` is not listed among the recent files, from `--temporary`.
     pub is_temporary: bool,
     /// True if recorded paths of volumes are trusted, from `--trust-paths`.
     pub trust_paths: bool,

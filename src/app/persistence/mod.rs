@@ -82,7 +82,8 @@ pub(crate) struct PersistentState {
     /// True while writes fail, which was reported.
     is_failing: bool,
     folder: Option<PathBuf>,
-    /// Absolute path of a file that is deleted when the window is closed, of which nothing is remembered.
+    /// Absolute path of a file that is deleted when the window is closed. It is in no list; only the autosaved look, with
+    /// which a crash is recovered from, names it.
     temporary: Option<PathBuf>,
     // Drop order: everything is written before the run ends.
     keeper: Option<AutosaveThread>,
@@ -144,7 +145,7 @@ impl PersistentState {
         self.folder.as_deref().map_or_else(RecentThumbnails::default, RecentThumbnails::new)
     }
 
-    /// Names a file that is deleted when the window is closed: nothing is remembered of it.
+    /// Keeps a file that is deleted when the window is closed out of the lists of recent files, up axes and corrections.
     pub(crate) fn set_temporary_file(&mut self, source: &Path) {
         self.temporary = absolute_path(source);
     }

@@ -20,7 +20,7 @@ pub struct WindowOptions {
     pub saves_on_close: bool,
     /// Volume for the look in `source` or `session`, in place of the one that it names.
     pub volume: Option<PathBuf>,
-    /// True if `source` is deleted when the window is closed, so that nothing is remembered of it.
+    /// True if `source` is deleted when the window is closed, so that it is not listed among the recent files.
     pub is_temporary: bool,
     /// True if looks may open volumes anywhere without a confirmation.
     pub trust_paths: bool,

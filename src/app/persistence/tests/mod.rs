@@ -55,7 +55,7 @@ fn paths(memory: &PersistentState) -> Vec<PathBuf> {
 }
 
 #[test]
-fn nothing_is_remembered_of_a_temporary_file() {
+fn a_temporary_file_is_in_no_list() {
     let folder = tempfile::tempdir().unwrap();
     let mut memory = remember(folder.path());
     let [copy, other] = ["copy.nrrd", "other.nrrd"].map(|name| folder.path().join(name));
